@@ -1,5 +1,6 @@
-/* What five hours of a functional mock-up unit cost: fmu LIBRARY GUID [STEP_S]. Prints the best of twenty runs over seven speeds, as the
- * cyclogram `chaotic` of the FP3 has them, outputs read at every step, and what an instance costs. bench/fmu.sh */
+/* What five hours of a functional mock-up unit cost: fmu LIBRARY GUID [STEP_S]. Prints the best of twenty runs over seven
+ * speeds, as the cyclogram `chaotic` of the FP3 has them, outputs read at every step, and what an instance costs.
+ * bench/fmu.sh */
 #define _POSIX_C_SOURCE 200809L
 #include <dlfcn.h>
 #include <math.h>

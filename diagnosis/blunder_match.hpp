@@ -59,8 +59,8 @@ struct Match {
 /// Standard deviation of readings about their mean.
 [[nodiscard]] double course_of(const Eigen::ArrayXd& read);
 
-/// Evidence that readings follow nothing that the scenario simulates, as of an instrument that has come off or is not connected.
-/// A thermometer then reads the air or another part, which is off by the offset o, like one in its place.
+/// Evidence that readings follow nothing that the scenario simulates, as of an instrument that has come off or is not
+/// connected. A thermometer then reads the air or another part, which is off by the offset o, like one in its place.
 [[nodiscard]] double nats_of_unrelated(const ReadBeside& r, double n_independent);
 
 }  // namespace driftwright::diagnosis

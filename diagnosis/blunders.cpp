@@ -108,7 +108,7 @@ double nats_without(const ReadBeside& r, double n_independent) {
   return std::max(match(r, {}, n_independent).nats, nats_of_unrelated(r, n_independent));
 }
 
-// --- readings ----------------------------------------------------------------------------------------------------------------
+// --- readings ------------------------------------------------------------------------------------------
 
 /// What a channel shows if its header is wrong.
 struct ForeignHeader {
@@ -174,8 +174,8 @@ struct OfReadings {
   std::vector<std::size_t> channels;
 };
 
-/// Whether no machine reads such temperatures, but it may if they are shown so: then a fault may be there, too, and the scenario
-/// need not meet them.
+/// Whether no machine reads such temperatures, but it may if they are shown so: then a fault may be there, too, and the
+/// scenario need not meet them.
 bool is_impossible_but_for(const ReadBeside& r, const Showing& shown) {
   if (!r.is_temperature) return false;
   const double read_K = r.read.mean(), model_K = r.model.mean();
@@ -254,7 +254,7 @@ std::vector<Blunder> reading_blunders(const Beside& b, double reference_C, std::
   return said;
 }
 
-// --- the drive ---------------------------------------------------------------------------------------------------------------
+// --- the drive ------------------------------------------------------------------------------------------
 
 /// The evidence of several channels. One fault of the machine may change all gains, so the largest price of a gain counts
 /// once if that is cheaper than one for each.
@@ -412,7 +412,7 @@ std::optional<OfDrive> drive_blunder(const Beside& b, const Twin& twin, std::siz
                  *std::move(predictions[*best])};
 }
 
-// --- names -------------------------------------------------------------------------------------------------------------------
+// --- names ------------------------------------------------------------------------------------------
 
 /// The name that a column without one probably has: of the outputs that the record lacks, the one that it meets, if it is
 /// clearly likelier than each other and than none.

@@ -66,7 +66,8 @@ class Fitter::Climb {
   template <class Predicted>
   void judge(Fit& at, const Predicted& predicted) const;
   void look(Fit& at, Prediction& kept, bool reuse) const;
-  /// Takes scatter's slopes anew if the fit has moved far or stopped before what its slopes promised. @returns whether it did
+  /// Takes scatter's slopes anew if the fit has moved far or stopped before what its slopes promised. @returns whether it
+  /// did
   bool retake(double promised);
   void differentiate(bool from_both_sides);
   /// W f's slope by a claim's number. @param base  W f here

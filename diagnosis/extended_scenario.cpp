@@ -131,8 +131,8 @@ class Writer {
   }
 
  private:
-  /// Whether the effects of a text are those of the list, and what is known together is in it; replaced entries are at another
-  /// position.
+  /// Whether the effects of a text are those of the list, and what is known together is in it; replaced entries are at
+  /// another position.
   [[nodiscard]] bool says_what_it_should(const std::string& edited) const {
     TwinState read;
     try {

@@ -35,7 +35,8 @@ struct ExtendedScenario {
 /// @param runs    runs in which the changes were found
 /// @param head    comment lines for the top
 /// @param folder  where the text will be written, which its paths become relative to; empty: they become absolute
-/// @param known_together  takes the place of the file's `known_together`, or removes it if it has no numbers; none: as it was
+/// @param known_together  takes the place of the file's `known_together`, or removes it if it has no numbers; none: as it
+/// was
 /// @throws InputError  if the file was removed or changed in the meantime
 [[nodiscard]] ExtendedScenario extended_scenario(const scenarios::Scenario& scenario, const Twin& twin,
                                                  const std::vector<MeasuredRun>& runs,

@@ -60,7 +60,8 @@ struct MeasuredRun {
 [[nodiscard]] double row_s(const MeasuredRun& run);
 [[nodiscard]] double shortest_row_s(const std::vector<MeasuredRun>& runs);
 
-/// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known. The cyclogram's last drive holds to the last row.
+/// Sets grid_s and row_in_grid of a run whose rows and cyclogram are known. The cyclogram's last drive holds to the last
+/// row.
 void set_grid(MeasuredRun& run);
 
 /// Assigns the channels of a record, whose source is its file or name, to the model's outputs. Readings of sensors on the

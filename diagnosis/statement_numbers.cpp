@@ -1,5 +1,6 @@
-// Of effects of the scenario that follow the recorded position of an axis: another value of one of their numbers, by the twin
-// itself. Such an effect acts at many places at once, at shares that go with the axis; no course at one place says that.
+// Of effects of the scenario that follow the recorded position of an axis: another value of one of their numbers, by the
+// twin itself. Such an effect acts at many places at once, at shares that go with the axis; no course at one place says
+// that.
 
 #include <fmt/format.h>
 

@@ -24,9 +24,9 @@ struct DrawnDifferences {
 /// the whole model, and the others on its projection on the leading directions of those states (proper orthogonal
 /// decomposition; Galerkin). Four machines more are run on both: unless their differences agree to 2 % in each output (root
 /// mean square; or to 0.1 % of the largest ones in its unit), they count among the first ones and more directions are tried
-/// with the next four; after three failures all are run on the whole model. So is a machine that has no solution on the projection.
-/// Source: Sirovich, Q. Appl. Math. 45 (1987) 561-571 (snapshots); Antoulas, Approximation of Large-Scale Dynamical Systems
-/// (2005), 9 (projection).
+/// with the next four; after three failures all are run on the whole model. So is a machine that has no solution on the
+/// projection. Source: Sirovich, Q. Appl. Math. 45 (1987) 561-571 (snapshots); Antoulas, Approximation of Large-Scale
+/// Dynamical Systems (2005), 9 (projection).
 /// @param deviations     x of each knob, a row for each machine
 /// @param tolerances     of the steps in time, those of the twin
 /// @param narrowed_from  a model with fewer states runs all machines

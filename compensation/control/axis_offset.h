@@ -1,5 +1,5 @@
-/* From a correction to the counts of a control's external offset, with a watchdog, cycle by cycle. C99; it needs no library, and
- * what it remembers is all zero before the first cycle.
+/* From a correction to the counts of a control's external offset, with a watchdog, cycle by cycle. C99; it needs no library,
+ * and what it remembers is all zero before the first cycle.
  *
  * The offset goes to sign * correction while it is enabled and the heartbeat is in time, and else to 0: both ways no faster
  * than the slew limit. LinuxCNC adds up the changes of its pin axis.L.eoffset-counts, times axis.L.eoffset-scale, while

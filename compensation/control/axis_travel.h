@@ -1,6 +1,6 @@
-/* The external offset of an axis whose correction depends on where the axis is: corrections for several places along its travel,
- * straight between them; beyond the outermost places their corrections hold. C99; it needs axis_offset.c, and what it
- * remembers is all zero before the first cycle.
+/* The external offset of an axis whose correction depends on where the axis is: corrections for several places along its
+ * travel, straight between them; beyond the outermost places their corrections hold. C99; it needs axis_offset.c, and what
+ * it remembers is all zero before the first cycle.
  *
  * Each place has enable, watchdog and slew limit of its own (axis_offset.h): they limit how fast a correction grows in time,
  * not how it changes while the axis moves. */
@@ -15,7 +15,8 @@ extern "C" {
 
 #define AXIS_TRAVEL_PLACES 16 /* at most */
 
-/* The value at a position. at: n positions that rise, n >= 1; values: one for each. No number: the value at the first place. */
+/* The value at a position. at: n positions that rise, n >= 1; values: one for each. No number: the value at the first
+ * place. */
 double axis_travel_value(const double* at, const double* values, int n, double position);
 
 typedef struct {

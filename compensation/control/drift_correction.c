@@ -39,8 +39,8 @@ static double by_others(const drift_guard* guard, int n, const double* x) {
   return expected;
 }
 
-/* Replaces those that are out by what the other inputs lead to, all at once: x_k - sum_l b_kl x_l = b_k + sum_j b_kj x_j with
- * k and l out and j not. One that only others that are out tell of is untold and stays as it is. a: n x (n + 1). */
+/* Replaces those that are out by what the other inputs lead to, all at once: x_k - sum_l b_kl x_l = b_k + sum_j b_kj x_j
+ * with k and l out and j not. One that only others that are out tell of is untold and stays as it is. a: n x (n + 1). */
 static void replace(const drift_fail_safe* safe, drift_input_state* inputs, double* a, double* x) {
   const int n = safe->n_inputs, width = n + 1;
   int i, j, k;

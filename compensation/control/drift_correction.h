@@ -1,6 +1,7 @@
-/* From the readings of a machine to the correction of its drift, row by row, with what keeps a broken sensor from making things
- * worse. This very file is compiled into Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone,
- * allocates nothing, and keeps all that it remembers in structs of the caller, which are all zero before the first row.
+/* From the readings of a machine to the correction of its drift, row by row, with what keeps a broken sensor from making
+ * things worse. This very file is compiled into Driftwright, which judges by it, and into controls. C99; it needs <math.h>
+ * alone, allocates nothing, and keeps all that it remembers in structs of the caller, which are all zero before the first
+ * row.
  *
  * Three stages, each of which can be called by itself, with the time since the row before (dt_s, of no account in the first
  * row):
@@ -114,13 +115,15 @@ typedef struct {
 double drift_repair(const drift_fail_safe* safe, drift_state* state, drift_input_state* inputs, double* room,
                     const double* readings, double dt_s, double* repaired);
 
-/* The value of one term without its coefficient; NAN where its reading is missing: its lag then waits, and makes up for it. */
+/* The value of one term without its coefficient; NAN where its reading is missing: its lag then waits, and makes up for
+ * it. */
 double drift_term_value(const drift_term* term, drift_term_state* state, double reading, double dt_s);
 
 /* intercept_um + sum_k coefficient_k value_k [um]; NAN where an input is missing. */
 double drift_formula_value(const drift_formula* formula, drift_term_state* terms, const double* readings, double dt_s);
 
-/* The prediction [um] as it may go to an axis. While the prediction is no number the last one holds, 0 before there was one. */
+/* The prediction [um] as it may go to an axis. While the prediction is no number the last one holds, 0 before there was
+ * one. */
 double drift_guarded_um(const drift_fail_safe* safe, drift_state* state, double deserved, double prediction_um, double dt_s);
 
 /* All three in a row; the correction [um]. */

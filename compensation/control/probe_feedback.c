@@ -25,7 +25,8 @@ int probe_is_valid(const probe_process* process) {
          probe_is_above(process->noise_um, 0.0) && process->lag_s >= 0.0 && isfinite(process->lag_s);
 }
 
-/* Factors of s and T, and the first weight of each filter of a size: exp(-(ln factor)^2 / (pi^2 / 4)) over the sum of all. */
+/* Factors of s and T, and the first weight of each filter of a size: exp(-(ln factor)^2 / (pi^2 / 4)) over the sum of
+ * all. */
 static const double kProbeSizes[PROBE_SIZES] = {1.0 / 3.0, 1.0, 3.0, 9.0}, kProbeTimes[PROBE_TIMES] = {0.25, 1.0, 4.0, 16.0};
 static const double kProbeFirst[PROBE_SIZES] = {0.0647425292435455, 0.10559133412205336, 0.0647425292435455,
                                                 0.014923607390855635};
@@ -163,8 +164,8 @@ void probe_row(const probe_process* process, probe_state* state, double predicti
       if (state->has_jumped) probe_wait(process, state->jumped, after_s - before_s);
     }
   }
-  /* The newest of the past rows is this one. It is written over while it is near the one before it: then the ring reaches back over
-   * lag_s, however fast rows come. */
+  /* The newest of the past rows is this one. It is written over while it is near the one before it: then the ring reaches
+   * back over lag_s, however fast rows come. */
   k = (state->newest + PROBE_PASTS - 1) % PROBE_PASTS;
   if (state->n_pasts == 0) {
     state->n_pasts = 1;
@@ -177,8 +178,8 @@ void probe_row(const probe_process* process, probe_state* state, double predicti
   state->past[state->newest].correction_um = isfinite(correction_um) ? correction_um : 0.0;
 }
 
-/* Prediction and correction at a time between two rows that are kept: the prediction on a straight line, the correction as it was in
- * force until the later one. */
+/* Prediction and correction at a time between two rows that are kept: the prediction on a straight line, the correction as
+ * it was in force until the later one. */
 static probe_past probe_past_at(const probe_state* state, double time_s) {
   int k = state->newest, i;
   probe_past at = state->past[k];

@@ -118,8 +118,8 @@ typedef struct {
 /* Whether all settings are in their ranges. Otherwise the residual stays 0, and all probings are refused. */
 int probe_is_valid(const probe_process* process);
 
-/* A row: time passes. prediction_um: of the drift. correction_um: in force from the row before until now. dt_s: since the row before; of no account in
- * the first one. It may be called between rows with the last prediction. */
+/* A row: time passes. prediction_um: of the drift. correction_um: in force from the row before until now. dt_s: since the
+ * row before; of no account in the first one. It may be called between rows with the last prediction. */
 void probe_row(const probe_process* process, probe_state* state, double prediction_um, double correction_um, double dt_s);
 
 /* A probing whose value has come in the last row; what became of it. */

@@ -1,7 +1,7 @@
-/* Several predictors of the same drift that are probed together: each has a filter for its own residual (probe_feedback.h), and the
- * axis is corrected by their mean, with weights that move with their losses at probings. This very file is compiled into
- * Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone, allocates nothing, and keeps all that it
- * remembers in structs of the caller, which are all zero before the first row. One member alone is its filter.
+/* Several predictors of the same drift that are probed together: each has a filter for its own residual (probe_feedback.h),
+ * and the axis is corrected by their mean, with weights that move with their losses at probings. This very file is compiled
+ * into Driftwright, which judges by it, and into controls. C99; it needs <math.h> alone, allocates nothing, and keeps all
+ * that it remembers in structs of the caller, which are all zero before the first row. One member alone is its filter.
  *
  *   correction = sum_i w_i (prediction_i + expected residual_i)
  *   in time    dw_i / dt = (1 - w_i - (n - 1) w_i) / ((n - 1) S),   one change of the best in S = PROBE_SHIFT_S on average
@@ -35,8 +35,9 @@ typedef struct {
   int n_refused;        /* of the first member: probings that the one that led has refused */
 } probe_member;
 
-/* Of a blend: a member's prediction as it may go to an axis [um]. The blend's own prediction blend_um has become correction_um by
- * trust, clamp and slew limit; a member differs from that by what trust leaves of its distance from the blend. */
+/* Of a blend: a member's prediction as it may go to an axis [um]. The blend's own prediction blend_um has become
+ * correction_um by trust, clamp and slew limit; a member differs from that by what trust leaves of its distance from the
+ * blend. */
 double probe_member_um(double correction_um, double trust, double blend_um, double member_um);
 
 /* A row: as probe_row() for each of the n members. predictions_um: n numbers; one that is not finite leaves the last one. */
@@ -47,7 +48,8 @@ void probe_members_row(const probe_process* processes, probe_member* members, in
 double probe_members_corrected_um(const probe_process* processes, const probe_member* members, int n, double lowest_um,
                                   double highest_um);
 
-/* A probing whose value has come in the last row: as probe_drift() and probe_left(). What became of it by the member that leads. */
+/* A probing whose value has come in the last row: as probe_drift() and probe_left(). What became of it by the member that
+ * leads. */
 int probe_members_drift(const probe_process* processes, probe_member* members, int n, double drift_um);
 int probe_members_left(const probe_process* processes, probe_member* members, int n, double left_um);
 

@@ -22,8 +22,8 @@
 extern "C" {
 #endif
 
-/* Rows up to the one taken that may be asked for again (observer_rows), with the time and ambient of the one before them; rows
- * that a mean innovation remembers: before, and until a sensor is tried again, it says nothing new. */
+/* Rows up to the one taken that may be asked for again (observer_rows), with the time and ambient of the one before them;
+ * rows that a mean innovation remembers: before, and until a sensor is tried again, it says nothing new. */
 enum { kObserverRowsBack = 30, kObserverRowsWarm = 10 };
 
 /* What an observer is made of. */

@@ -5,8 +5,8 @@
 
 static const int kMostSteps = 60; /* per eigenvalue; two or three are usual */
 
-/* Row r of the lower triangle holds the vector that reflected column r - 1; A becomes H ... A ... H with the diagonal d and e beside
- * it. rotated: the product of the reflections, transposed: its row k is column k. */
+/* Row r of the lower triangle holds the vector that reflected column r - 1; A becomes H ... A ... H with the diagonal d and
+ * e beside it. rotated: the product of the reflections, transposed: its row k is column k. */
 static void reduce_to_three_diagonals(int n, double* a, double* d, double* e, double* rotated) {
   int i, j, k;
   for (k = 0; k + 2 < n; ++k) {

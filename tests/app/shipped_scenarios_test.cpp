@@ -182,7 +182,8 @@ TEST(RotaryMill, ItsRTestShowsThePlaceOfTheAxisThatTheVolumeHas) {
       std::find_if(summary.at("axes").begin(), summary.at("axes").end(), [](const auto& a) { return a.at("axis") == "c"; });
   ASSERT_NE(axis, summary.at("axes").end());
   const auto& location = axis->at("location").back();
-  // The tool of the volume is above the axis of C, so both see its place. They differ by what the linear axes do on the circle.
+  // The tool of the volume is above the axis of C, so both see its place. They differ by what the linear axes do on the
+  // circle.
   EXPECT_NEAR(fit.at("YO_um").get<double>(), location.at("YO_um").get<double>(), 3.0);
   EXPECT_NEAR(fit.at("XO_um").get<double>(), location.at("XO_um").get<double>(), 3.0);
   EXPECT_GT(fit.at("YO_um").get<double>(), 15.0);     // the warm column and head bend the tool away from it

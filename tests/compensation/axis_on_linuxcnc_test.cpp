@@ -12,9 +12,9 @@
 namespace driftwright::compensation::axis_on_linuxcnc_test {
 namespace {
 
-// The face at -20 mm, met by the probe of 100 mm: joint 2 at 80 mm, less the drift. A low-pass lets the drift grow with a time
-// constant of 50 s, by 0.8 um/s at first: 150 times as fast as a spindle that grows by 20 um in an hour. A probing each 3.5 s
-// is then one each 9 min.
+// The face at -20 mm, met by the probe of 100 mm: joint 2 at 80 mm, less the drift. A low-pass lets the drift grow with a
+// time constant of 50 s, by 0.8 um/s at first: 150 times as fast as a spindle that grows by 20 um in an hour. A probing
+// each 3.5 s is then one each 9 min.
 const std::string kHal = std::string(R"(loadrt trivkins coordinates=XYZ
 loadrt motmod servo_period_nsec=1000000 num_joints=3
 loadrt comp count=1

@@ -43,7 +43,8 @@ TEST(AxisTravel, IsStraightBetweenPlacesAndHoldsBeyondThem) {
   EXPECT_EQ(axis_travel_value(kAt.data(), um.data(), 1, 700.0), 1.0);
 }
 
-// Each place grows by 0.25 um a cycle to its own correction. Where the axis is, its offset is the chord: no slew limit of that.
+// Each place grows by 0.25 um a cycle to its own correction. Where the axis is, its offset is the chord: no slew limit of
+// that.
 TEST(AxisTravel, IsSlewedInTimeAndNotByTheWayOfTheAxis) {
   Axis axis;
   axis.run(1);  // the heartbeat has not changed yet
@@ -87,7 +88,8 @@ TEST(AxisTravel, IsAtZeroWhileTheMachineIsOff) {
   EXPECT_EQ(axis.state.is_offset_enabled, 0);
 }
 
-// The control adds up counts times scale: what it has taken is taken back in the same scale, and a wrong setting is said at once.
+// The control adds up counts times scale: what it has taken is taken back in the same scale, and a wrong setting is said at
+// once.
 TEST(AxisTravel, ANewCountWaitsUntilTheOldOnesAreTakenBack) {
   Axis axis;
   axis.position = 800.0;

@@ -162,8 +162,9 @@ TEST(DeployedFollower, TheIntervalOfAMeanGrowsAsItsMembersDepart) {
   EXPECT_GT(n_narrow, 5);
 }
 
-// Of a blend whose weights move: what its members may send to the axis is the same row by row as of the whole run. They are as far on
-// both sides of the mean as trust leaves, also while a thermometer is repaired; a blend without `member_residuals` gives none.
+// Of a blend whose weights move: what its members may send to the axis is the same row by row as of the whole run. They are
+// as far on both sides of the mean as trust leaves, also while a thermometer is repaired; a blend without `member_residuals`
+// gives none.
 TEST(DeployedFollower, TheMembersOfABlendAreWhatTheyAreOfTheWholeRun) {
   const MachineRun run = machine_with_faults();
   DeployedPredictor d = fixtures::deployed_blend();

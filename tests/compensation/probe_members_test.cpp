@@ -1,5 +1,5 @@
-// Weights among predictors that are probed together: fixed share against the sum over all sequences of members and its bound, and
-// the mixture of their filters against its formulas.
+// Weights among predictors that are probed together: fixed share against the sum over all sequences of members and its
+// bound, and the mixture of their filters against its formulas.
 
 #include "compensation/control/probe_members.h"
 
@@ -129,7 +129,8 @@ TEST(ProbeMembers, LossesMayBeBeyondTheRangeOfExponentials) {
   EXPECT_NEAR(weights.loss, 5000.0 + std::log(3.0) - std::log(1.0 + std::exp(-1.0)), 1e-9);
 }
 
-/// Density of a first probing by a filter's 16 processes, times sqrt(2 pi), and its negative logarithm: four deviations count at most.
+/// Density of a first probing by a filter's 16 processes, times sqrt(2 pi), and its negative logarithm: four deviations
+/// count at most.
 double first_loss(double off_um, double deviation_um, double noise_um) {
   double density = 0.0, sum = 0.0, um2 = 0.0;
   for (const double size : {1.0 / 3.0, 1.0, 3.0, 9.0}) {
@@ -151,8 +152,8 @@ TEST(ProbeMembers, AProbingCostsByItsDensity) {
   }
 }
 
-// The share over a time is that of a chain which leaves its member once in a shift: rate 1/S at first, equal parts in the end, and
-// the same in one step as in many.
+// The share over a time is that of a chain which leaves its member once in a shift: rate 1/S at first, equal parts in the
+// end, and the same in one step as in many.
 TEST(ProbeMembers, TheShareIsThatOfAChainInTime) {
   EXPECT_NEAR(probe_share(4, 1.0) * PROBE_SHIFT_S, 1.0, 1e-4);
   EXPECT_NEAR(probe_share(2, 1e9), 0.5, 1e-12);

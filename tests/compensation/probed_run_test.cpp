@@ -57,8 +57,8 @@ TEST(ProbedRun, OfOnePredictorIsItsFilter) {
   EXPECT_LT(run.left.rmse, 0.7 * 3.0);
 }
 
-// Two members: one is right in the first half and then 30 µm off, the other one the reverse. With weights less is left than by
-// either with its own probings; two equal members leave what one leaves.
+// Two members: one is right in the first half and then 30 µm off, the other one the reverse. With weights less is left than
+// by either with its own probings; two equal members leave what one leaves.
 TEST(ProbedRun, WeightsFollowTheMemberThatIsRight) {
   const ResidualProcess p{2.0, 7200.0};
   Machine good = drawn(p, 2880, 6), bad = good;
@@ -81,8 +81,8 @@ TEST(ProbedRun, WeightsFollowTheMemberThatIsRight) {
   EXPECT_NEAR(probed_run(twins, good.time_s, how).left.rmse, probed_run(one, good.time_s, how).left.rmse, 1e-9);
 }
 
-// A probe that reads a constant too much from 5 h on: beyond the bound of refusal it is noticed at the first probing, and the
-// second one is taken for a jump, so the axis goes wrong by the constant. Far below the bound no one notices it.
+// A probe that reads a constant too much from 5 h on: beyond the bound of refusal it is noticed at the first probing, and
+// the second one is taken for a jump, so the axis goes wrong by the constant. Far below the bound no one notices it.
 TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
   const ResidualProcess p{1.0, 7200.0};
   const Machine m = drawn(p, 900, 5);
@@ -102,10 +102,10 @@ TEST(ProbedRun, ABiasedProbeIsNoticedBeyondTheBoundOfRefusal) {
   EXPECT_FALSE(probed_run(alone, m.time_s, how).noticed_at);
 }
 
-// An error that grows by 2 µm an hour, and from 10 h on a probe that goes on reading what it read on the corrected axis: some
-// 2 µm. Each reading moves the axis by as much, and none is beyond four deviations. Good readings differ by 0.05 µm or more, so
-// one that is equal 2 µm from what is expected has a chance of 1 in 165 at most; two of them have 1 in 27,000, and the second
-// one is refused. Without this, five further ones would move the axis by 10 µm more.
+// An error that grows by 2 µm an hour, and from 10 h on a probe that goes on reading what it read on the corrected axis:
+// some 2 µm. Each reading moves the axis by as much, and none is beyond four deviations. Good readings differ by 0.05 µm or
+// more, so one that is equal 2 µm from what is expected has a chance of 1 in 165 at most; two of them have 1 in 27,000, and
+// the second one is refused. Without this, five further ones would move the axis by 10 µm more.
 TEST(ProbedRun, AStuckProbeIsNoticedAfterTwoReadings) {
   Machine m = drawn({16.0, 3.6e6}, 1000, 5);
   for (std::size_t i = 0; i < m.left_um.size(); ++i) m.left_um[i] = 2.0 * m.time_s[i] / 3600.0;

@@ -54,8 +54,8 @@ TEST(ResidualProcess, AnOffsetHasALongTimeConstant) {
   EXPECT_FALSE(fit_residual_process(std::vector<ResidualSeries>{{{0.0, 60.0}, {1.0, 1.0}}}, 0.5));
 }
 
-// Before each of many probings the variance of each filter of the bank is that of the stationary Riccati equation of a scalar:
-// P = a² P R / (P + R) + (1 - a²) s².
+// Before each of many probings the variance of each filter of the bank is that of the stationary Riccati equation of a
+// scalar: P = a² P R / (P + R) + (1 - a²) s².
 TEST(ProbeFeedback, ItsVariancesAreThoseOfTheRiccatiEquation) {
   const ResidualProcess p{4.0, 7200.0};
   ProbeFeedback feedback(p, {.noise_um = 1.0}, true);
@@ -83,8 +83,8 @@ TEST(ProbeFeedback, ItsVariancesAreThoseOfTheRiccatiEquation) {
   EXPECT_NEAR(feedback.deviation_um(), std::sqrt(mean_um2), 1e-9);  // all expect 0
 }
 
-/// What is left of draws of a process by the filter of a fit, from row 1500 of 3000 on, with a probing each hour: mean square, and that
-/// which the filter says.
+/// What is left of draws of a process by the filter of a fit, from row 1500 of 3000 on, with a probing each hour: mean
+/// square, and that which the filter says.
 struct LeftOfDraws {
   double um2 = 0.0, said_um2 = 0.0;
 };
@@ -109,9 +109,10 @@ LeftOfDraws left_of_draws(const ResidualProcess& fitted, const ResidualProcess& 
   return left;
 }
 
-// A filter that knew s and T leaves 0.40 s² of s = 4 um, T = 2 h by the Riccati equation: s² - (s² - P+) (1 - exp(-1)), P+ = 0.91.
-// The bank, which must learn them, leaves at most a tenth more, whether its fit is right or three times too small or too large.
-// It says too much rather than too little, because a part of the weights returns to the first ones, which know of larger errors.
+// A filter that knew s and T leaves 0.40 s² of s = 4 um, T = 2 h by the Riccati equation: s² - (s² - P+) (1 - exp(-1)), P+ =
+// 0.91. The bank, which must learn them, leaves at most a tenth more, whether its fit is right or three times too small or
+// too large. It says too much rather than too little, because a part of the weights returns to the first ones, which know of
+// larger errors.
 TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
   const ResidualProcess truth{4.0, 7200.0};
   for (const double factor : {1.0 / 3.0, 1.0, 3.0}) {
@@ -122,15 +123,17 @@ TEST(ProbeFeedback, LearnsHowLargeErrorsAreInThisRun) {
   }
 }
 
-// Errors of 0.6 um that fade in 20 min, and a probe of 1 um: probings each hour can gain nothing. They cost a fifth at most, though
-// the fit says 2 um and 3 h; a filter that believed the fit would be moved by 0.8 of each probing and cost more than a half.
+// Errors of 0.6 um that fade in 20 min, and a probe of 1 um: probings each hour can gain nothing. They cost a fifth at most,
+// though the fit says 2 um and 3 h; a filter that believed the fit would be moved by 0.8 of each probing and cost more than
+// a half.
 TEST(ProbeFeedback, LearnsThatErrorsAreSmallerAndFaster) {
   const LeftOfDraws left = left_of_draws({2.0, 10800.0}, {0.6, 1200.0}, 1.0);
   EXPECT_LT(std::sqrt(left.um2), 1.2 * 0.6);
 }
 
-// Of good probings of errors as large as in the fit few are refused, of errors 3 times as large one in 120: a mixture of normal laws
-// has more than one law beyond four deviations. The bands are three standard errors of some 17 and 200 refusals, and more.
+// Of good probings of errors as large as in the fit few are refused, of errors 3 times as large one in 120: a mixture of
+// normal laws has more than one law beyond four deviations. The bands are three standard errors of some 17 and 200 refusals,
+// and more.
 TEST(ProbeFeedback, RefusesAsManyGoodProbingsAsIsSaid) {
   const auto refused_of = [](double times) {
     Random random(7);
@@ -164,8 +167,8 @@ TEST(ProbeFeedback, IsNotMuchStricterAfterACalmTime) {
   EXPECT_TRUE(feedback.probe_drift_um(6.0));
 }
 
-// Three chips in a row are taken for a jump, and for large errors. A good probing brings the axis back; a shift later the bound of
-// refusal is twice the usual one at most.
+// Three chips in a row are taken for a jump, and for large errors. A good probing brings the axis back; a shift later the
+// bound of refusal is twice the usual one at most.
 TEST(ProbeFeedback, ComesBackAfterThreeChipsInARow) {
   ProbeFeedback feedback({1.5, 7200.0}, {.noise_um = 1.0}, true);
   const std::vector<double> reads = {0.4, 40.0, -35.0, 60.0, 0.3, -0.2, 0.5};
@@ -186,7 +189,8 @@ struct Read {
   double time_s, um;
 };
 
-/// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers: no filter.
+/// Mean and variance of residual and level at a time, given probings, by the joint normal distribution of all numbers: no
+/// filter.
 /// @param jumped_s  probings from then on read a level, too, of which nothing is known before; negative: none
 std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& probe, bool is_known,
                                          const std::vector<Read>& reads, double time_s, double jumped_s = -1.0) {
@@ -214,7 +218,8 @@ std::pair<double, double> by_covariances(const ResidualProcess& p, const Probe& 
   return {weights.dot(z), covariance(time_s, time_s) + unknown * has_level(time_s) - weights.dot(with)};
 }
 
-/// The same of 16 processes, with the probabilities that each reading leaves them, and which return to those at first in a day.
+/// The same of 16 processes, with the probabilities that each reading leaves them, and which return to those at first in a
+/// day.
 std::pair<double, double> by_16_covariances(const ResidualProcess& p, const Probe& probe, bool is_known,
                                             const std::vector<Read>& reads, double time_s, double jumped_s = -1.0) {
   std::vector<ResidualProcess> processes;
@@ -326,8 +331,9 @@ TEST(ProbeFeedback, RefusesAChipAndTakesWhatIsProbedTwice) {
   EXPECT_EQ(feedback.state().n_jumps, 1);
 }
 
-// A drift that is five times faster than the process ever was: the third probing is taken, and what it says of the size of errors
-// lets the next ones be taken, too. 20 um an hour: what is left after a probing is 0.5 um or so in most hours, and below 65 um.
+// A drift that is five times faster than the process ever was: the third probing is taken, and what it says of the size of
+// errors lets the next ones be taken, too. 20 um an hour: what is left after a probing is 0.5 um or so in most hours, and
+// below 65 um.
 TEST(ProbeFeedback, FollowsADriftThatIsFasterThanItsProcess) {
   ProbeFeedback feedback({2.0, 36000.0}, {.noise_um = 0.5}, true);
   double most_um = 0.0;
@@ -400,8 +406,8 @@ std::vector<int> verdicts(const std::vector<double>& reads_um, double predicted_
   return all;
 }
 
-// Steps of 0.1 um, so at 3 um from what is expected an equal reading has a chance of 0.1 * 0.242 / 3 at most, 1 in 124, and two
-// of them 1 in 15,400. The prediction moves by 2 um between probings, so the residual of an unmoved reading does, too.
+// Steps of 0.1 um, so at 3 um from what is expected an equal reading has a chance of 0.1 * 0.242 / 3 at most, 1 in 124, and
+// two of them 1 in 15,400. The prediction moves by 2 um between probings, so the residual of an unmoved reading does, too.
 TEST(ProbeFeedback, RefusesAStuckProbeWhileThePredictionMoves) {
   const std::vector<int> moved = verdicts({0.0, 0.1, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 14.0}, 2.0);
   const auto stuck = std::find(moved.begin(), moved.end(), PROBE_STUCK) - moved.begin();
@@ -428,8 +434,8 @@ TEST(ProbeFeedback, RefusesWhatAGoodProbeWouldNotRepeatOnceIn16000) {
   EXPECT_EQ(feedback.state().verdict, PROBE_STUCK);
 }
 
-// No alarm: a calm axis whose readings are rounded to half of their noise, a drift that stays while the filters expect that it
-// fades, and a probe of which no step is known.
+// No alarm: a calm axis whose readings are rounded to half of their noise, a drift that stays while the filters expect that
+// it fades, and a probe of which no step is known.
 TEST(ProbeFeedback, DoesNotCallACalmAxisAStuckProbe) {
   for (const double rounded_um : {0.5, 1.0}) {
     Random random(11);

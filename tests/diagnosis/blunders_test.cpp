@@ -252,7 +252,8 @@ TEST(Match, FindsGainAndOffset) {
   EXPECT_GT(foreign.nats - match(r, {}, 1000.0).nats, 12.0);
 }
 
-// The same course 50 K off: (50 / 8.33)^2 / 2 = 18 nats for a thermometer, nothing for a displacement, whose zero is arbitrary.
+// The same course 50 K off: (50 / 8.33)^2 / 2 = 18 nats for a thermometer, nothing for a displacement, whose zero is
+// arbitrary.
 TEST(Match, AThermometerThatHasComeOffIsNotFarOff) {
   ReadBeside near;
   near.model = Eigen::ArrayXd::LinSpaced(50, 0.0, 20.0);

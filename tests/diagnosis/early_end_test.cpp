@@ -41,7 +41,8 @@ const Beside& beside() {
   return b;
 }
 
-/// A diagnosis that nobody ends: what it finds, the stages that it goes through in their order, and the shares that it tells.
+/// A diagnosis that nobody ends: what it finds, the stages that it goes through in their order, and the shares that it
+/// tells.
 struct Whole {
   Diagnosis diagnosis;
   std::vector<std::string> stages;

@@ -147,8 +147,8 @@ TEST_F(OneSpeed, CannotTellConstantHeatFromHeatOfSpeedButAChangeOfSpeedDoes) {
   EXPECT_EQ(e->n_simulated, 8);  // four under each; twenty of each:
   const Check check = checked(result, e->cyclogram, 20);
   EXPECT_EQ(check.n, 40);
-  // 30 of 40 with a lead of 3 nats, which a probability of 0.95 is; 0.9 is 2.2 nats: at one speed the size of the heat is not
-  // known beside its way out, and of the machines drawn some have so little of it that the two are one machine and stay
+  // 30 of 40 with a lead of 3 nats, which a probability of 0.95 is; 0.9 is 2.2 nats: at one speed the size of the heat is
+  // not known beside its way out, and of the machines drawn some have so little of it that the two are one machine and stay
   // open.
   RecordProperty("told_of_40", check.n_told);
   EXPECT_GE(check.n_told, 27);

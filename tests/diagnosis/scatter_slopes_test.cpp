@@ -42,7 +42,8 @@ cyclograms:
   second: [[60 min, 1000 rpm]]
 )";
 
-/// Only the drive, the ambient and the times of the rows count: nothing is fitted, and what the record lacks is not refused (as recorded).
+/// Only the drive, the ambient and the times of the rows count: nothing is fitted, and what the record lacks is not refused
+/// (as recorded).
 std::string record(const std::string& name, double rpm) {
   std::string text = "time_s,speed_rpm,ambient_degC,t_spindle_degC,t_column_degC,tip_z_um\n";
   for (int i = 0; i <= 90; ++i)

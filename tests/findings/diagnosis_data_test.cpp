@@ -267,8 +267,8 @@ TEST(Reports, GiveAStatementTheCourseOfTheCauseThatNamesIt) {
   EXPECT_THAT(page(), HasSubstr(std::string("<td>displacement nose</td><td>") + unknown));
 }
 
-// Two causes in one channel: a step of 5 um, and 2 um that another one adds. Each picture shows the machine without its cause
-// and with both, in the channel where that cause shows most.
+// Two causes in one channel: a step of 5 um, and 2 um that another one adds. Each picture shows the machine without its
+// cause and with both, in the channel where that cause shows most.
 TEST(Reports, ShowOfEachCauseWhatTheMachineWouldDoWithoutIt) {
   StepOfAnIndicator found;
   diagnosis::MeasuredRun& run = found.measured.runs[0];

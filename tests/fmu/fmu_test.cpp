@@ -140,8 +140,8 @@ TEST_P(Fmu, IsValidByTheSchemaAndTheSameBytesEachTime) {
   EXPECT_EQ(unit.files, Unit(fp3.order(GetParam()), name("again")).files);
 }
 
-/// Readings with noise, one of which goes wrong, two thermometers that are exchanged later, and an ambient's thermometer that jumps for
-/// longer than the rows that the observer goes back.
+/// Readings with noise, one of which goes wrong, two thermometers that are exchanged later, and an ambient's thermometer
+/// that jumps for longer than the rows that the observer goes back.
 MachineRun troubled_run(const Fp3& fp3) {
   const Record predicted = fp3.predicted("chaotic");
   MachineRun run{.cyclogram = fp3.scenario.cyclogram("chaotic"), .ambient = {}, .readings = predicted};
@@ -226,8 +226,9 @@ TEST_P(Fmu, OfAnObserverSaysWhatTheObserverSays) {
   EXPECT_LT(largest_gap(exchanged.of[0], seen.drift_um, n + 1), kSame_um);
 }
 
-// Probings on a unit: four of a machine that is 8 um off, one of a chip, one that missed, at rows of samples, and one between two
-// samples, which counts at the next. The numbers are those of the filter of the program on the drift times trust.
+// Probings on a unit: four of a machine that is 8 um off, one of a chip, one that missed, at rows of samples, and one
+// between two samples, which counts at the next. The numbers are those of the filter of the program on the drift times
+// trust.
 TEST_P(Fmu, OfAnObserverTakesProbings) {
   const Fp3& fp3 = Fp3::get();
   const scenarios::ReducedMachine& reduced = *fp3.model.reduced();

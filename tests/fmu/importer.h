@@ -1,5 +1,5 @@
-/* An importer of functional mock-up units for tests, in C against the headers of the standard: it loads a binary and calls it in the order
- * that the standard prescribes, in co-simulation or, with an integrator of its own, in model exchange. */
+/* An importer of functional mock-up units for tests, in C against the headers of the standard: it loads a binary and calls
+ * it in the order that the standard prescribes, in co-simulation or, with an integrator of its own, in model exchange. */
 #ifndef DRIFTWRIGHT_TESTS_FMU_IMPORTER_H
 #define DRIFTWRIGHT_TESTS_FMU_IMPORTER_H
 
@@ -20,7 +20,8 @@ typedef struct {
   const double* input_rows; /* n_rows x n_inputs */
   int ambient_from_input;   /* -1: the unit has no such parameter */
   unsigned ambient_from_input_reference;
-  /* Of co-simulation: steps no longer than this, and of its first ambient_rate_input, if one is not -1, the rate by that of the rows. */
+  /* Of co-simulation: steps no longer than this, and of its first ambient_rate_input, if one is not -1, the rate by that of
+   * the rows. */
   double step_s;
   int ambient_input;
   size_t rewind_at_row;  /* there the state is kept, written, read and set again after a step elsewhere; 0: nowhere */

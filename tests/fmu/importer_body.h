@@ -1,6 +1,6 @@
-/* How a unit is driven, in either version of the standard. Included once in each importer, after its type `unit`, fail(), CALL() and
- * event_info, and after what the versions call differently: get(), set(), set_rate(), step(), sensitivity(), derivatives(),
- * rewind_state(), handle_events() and completed_step(). These return 0, or 1 after fail(). */
+/* How a unit is driven, in either version of the standard. Included once in each importer, after its type `unit`, fail(),
+ * CALL() and event_info, and after what the versions call differently: get(), set(), set_rate(), step(), sensitivity(),
+ * derivatives(), rewind_state(), handle_events() and completed_step(). These return 0, or 1 after fail(). */
 
 static int set_inputs(unit* u, size_t row) {
   const importer_run* const run = u->run;

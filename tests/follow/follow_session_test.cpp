@@ -257,8 +257,8 @@ ProbeFeedback after_minutes(int n) {
 }
 
 // The model is 9 um off, which stays. One probing with 0.3 um of its noise leaves less than that noise; then what it found
-// fades as the filter has it, and the interval widens from 1.96 noises or so to that of `validate` and beyond, because the probing
-// says that errors are larger than in the fit.
+// fades as the filter has it, and the interval widens from 1.96 noises or so to that of `validate` and beyond, because the
+// probing says that errors are larger than in the fit.
 TEST(FollowProbing, AConstantOffsetIsTakenUpAndFades) {
   Session session = probed_session();
   FollowLine line;
@@ -341,8 +341,8 @@ TEST(FollowProbing, AChipIsRefusedAndAConfirmedJumpTaken) {
   EXPECT_EQ(line.axes[0].probing->n_refused, 3);
 }
 
-// The probe goes on reading 4 um on the corrected axis, though the correction has taken up as much each time. Steps are 0.5 um, so
-// some 4 um off a repetition has a chance of 0.5 * 0.242 / 4, 1 in 33: four of them are too many.
+// The probe goes on reading 4 um on the corrected axis, though the correction has taken up as much each time. Steps are 0.5
+// um, so some 4 um off a repetition has a chance of 0.5 * 0.242 / 4, 1 in 33: four of them are too many.
 TEST(FollowProbing, AStuckProbeIsRefusedAndSaid) {
   Session session = probed_session({}, "probe_left_drift_y");
   FollowLine line;
@@ -410,8 +410,8 @@ output::PredictorFile blend_of_two() {
   return file;
 }
 
-// At 25 degC the blend says 10 um, its members 20 and 0 um. A probing of 20 um: the correction is that of the filters of the program,
-// the line says the weights, and a restart changes nothing.
+// At 25 degC the blend says 10 um, its members 20 and 0 um. A probing of 20 um: the correction is that of the filters of the
+// program, the line says the weights, and a restart changes nothing.
 TEST(FollowProbing, MovesTheWeightsOfABlend) {
   const std::filesystem::path state = temporary_folder() / "blend.state";
   Session session = probed_session({}, "probe_drift_y", blend_of_two());

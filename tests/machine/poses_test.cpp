@@ -52,8 +52,8 @@ constexpr double kContact_W_m2K = 200.0;
 constexpr double kBed_1_K = 12e-6, kTable_1_K = 20e-6;
 const Eigen::Vector3d kTable_m(0.2, 0.2, 0.1);
 
-/// A table of 0.2 m on a bed of 0.8 m x 0.2 m x 0.1 m, which expands from its origin. The table slides without friction; soft
-/// springs at its low end hold it along x and y. It is heated by 40 W while the spindle turns.
+/// A table of 0.2 m on a bed of 0.8 m x 0.2 m x 0.1 m, which expands from its origin. The table slides without friction;
+/// soft springs at its low end hold it along x and y. It is heated by 40 W while the spindle turns.
 struct Slide {
   double drawn_m = 0.0;  ///< where the table is in the mesh
   std::string axes = "axes: {x: {moves: [table], along: x, range: [0 mm, 800 mm]}}\n";

@@ -71,8 +71,8 @@ Mesh turntable() {
 }
 
 TEST(ContinuedSides, AreTheRingThatTheCornersOfATurningBodySweep) {
-  // Corners of the table are 0.1414 m from the axis; with a twentieth of the strip of a facet at the corner, 0.0707 m, 0.145 m.
-  // Centres of the base's facets within that are those at 0.125 m and 0.025 m from the middle lines (0.1275 m); those at
+  // Corners of the table are 0.1414 m from the axis; with a twentieth of the strip of a facet at the corner, 0.0707 m, 0.145
+  // m. Centres of the base's facets within that are those at 0.125 m and 0.025 m from the middle lines (0.1275 m); those at
   // 0.125 m and 0.075 m (0.1458 m) are not.
   Mesh mesh = turntable();
   const int base = mesh.surface("base/table@base");

@@ -453,8 +453,8 @@ TEST_P(InCycle, ConstantsOfFanucHaveEightDigitsWithTheZeroBeforeThePoint) {
   EXPECT_THROW((void)control_program(d, ControlLanguage::kFanuc, "ridge", {}, "a test"), InputError);
 }
 
-/// Formulas for three places: the fixture's at -100 mm, half of it at 300 mm, without one of its thermometers if they do not read
-/// alike, and twice as much at 500 mm.
+/// Formulas for three places: the fixture's at -100 mm, half of it at 300 mm, without one of its thermometers if they do not
+/// read alike, and twice as much at 500 mm.
 std::vector<PlacedModel> three_places(bool from_start, double period_s, bool read_alike = false) {
   std::vector<PlacedModel> places;
   for (const double at_mm : {-100.0, 300.0, 500.0}) {

@@ -311,8 +311,8 @@ TEST(CFunction, TakesProbingsAsTheProgramDoes) {
   EXPECT_GT(n_slewed, 0);
 }
 
-// A blend whose weights move: the exported C gives what the deployed predictor and the filters of the program give, with probings that
-// the members expected differently, a chip, and a thermometer that fails.
+// A blend whose weights move: the exported C gives what the deployed predictor and the filters of the program give, with
+// probings that the members expected differently, a chip, and a thermometer that fails.
 TEST(CFunction, MovesTheWeightsOfABlendAsTheProgramDoes) {
   const compensation::DeployedPredictor blend = fixtures::deployed_blend();
   const DeployedModel d = deployed_model(blend);

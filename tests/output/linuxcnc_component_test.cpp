@@ -215,8 +215,8 @@ TEST(LinuxcncComponent, TakesProbings) {
   EXPECT_EQ(out[4354].at("setting_is_wrong"), 0.0);
 }
 
-// The blend says 20 um, its members 30 and 10 um. The axis is at 30 um: the first member expected it, gains weight, and leads from
-// then on. The same numbers by the filters of the program, which are fed once a second as the component is.
+// The blend says 20 um, its members 30 and 10 um. The axis is at 30 um: the first member expected it, gains weight, and
+// leads from then on. The same numbers by the filters of the program, which are fed once a second as the component is.
 TEST(LinuxcncComponent, MovesTheWeightsOfABlend) {
   DeployedModel d = two_um_per_K();
   d.residual = compensation::ResidualProcess{5.0, 1800.0};

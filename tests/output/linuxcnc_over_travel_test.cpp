@@ -33,8 +33,8 @@ std::filesystem::path exported_over_travel(const std::string& folder_name) {
   return folder;
 }
 
-// 20, 5 and 40 um. Each place is slewed by 0.5 um/s; the axis may then go where it likes, and the offset follows in the same cycle.
-// Positions are in inches here.
+// 20, 5 and 40 um. Each place is slewed by 0.5 um/s; the axis may then go where it likes, and the offset follows in the same
+// cycle. Positions are in inches here.
 TEST(LinuxcncOverTravel, FollowsThePositionOfTheAxis) {
   Component c(exported_over_travel("over_travel"), "screw_axis.comp");
   int heartbeat = 0;

@@ -1,5 +1,6 @@
-// A screw that grows on a whole LinuxCNC, headless: its motor's encoder closes the loop, and the exported component holds the axis by
-// external offsets over its travel. Skipped where LinuxCNC, halcompile or the right to LinuxCNC's folder of modules is missing.
+// A screw that grows on a whole LinuxCNC, headless: its motor's encoder closes the loop, and the exported component holds
+// the axis by external offsets over its travel. Skipped where LinuxCNC, halcompile or the right to LinuxCNC's folder of
+// modules is missing.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -18,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kModules = "/usr/lib/linuxcnc/modules";
 
-/// The screw's growth where the axis is [um for each kelvin]: a parabola, 1.2 at 0 mm, 5.8 at 400 mm, 9.6 at 800 mm. At 10 K it lies
-/// 1 um from its chords.
+/// The screw's growth where the axis is [um for each kelvin]: a parabola, 1.2 at 0 mm, 5.8 at 400 mm, 9.6 at 800 mm. At 10 K
+/// it lies 1 um from its chords.
 constexpr const char* kGrowth = "(1.2 + 0.0125 * x - 2.5e-6 * x * x)";
 
 DeployedModel formula(double at_mm, double um_per_K) {

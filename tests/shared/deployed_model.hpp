@@ -58,8 +58,8 @@ inline DeployedModel deployed(bool from_start, double period_s) {
   return d;
 }
 
-/// The mean of two formulas of that machine, of which one is 40 % larger and the other as much smaller, as a blend whose weights
-/// move with probings.
+/// The mean of two formulas of that machine, of which one is 40 % larger and the other as much smaller, as a blend whose
+/// weights move with probings.
 inline compensation::DeployedPredictor deployed_blend() {
   DeployedModel mean = deployed(true, 60.0);
   std::vector<DriftModel> members(2, mean.model);

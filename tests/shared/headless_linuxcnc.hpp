@@ -37,7 +37,8 @@ net prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared
 net change iocontrol.0.tool-change => iocontrol.0.tool-changed
 )";
 
-/// Runs LinuxCNC with sim.ini in the folder, which has each file of `files`, and reads the lines "name number" of result.txt.
+/// Runs LinuxCNC with sim.ini in the folder, which has each file of `files`, and reads the lines "name number" of
+/// result.txt.
 /// @param files  script.py and sim.hal among them @param seconds  at most
 inline std::map<std::string, double> run_headless(const std::filesystem::path& folder,
                                                   const std::map<std::string, std::string>& files, int seconds) {

@@ -1,5 +1,6 @@
 #pragma once
-// Strategies at three places of a screw whose error is in closed form: (position / 0.4 m)^2 um for each kelvin of a thermometer.
+// Strategies at three places of a screw whose error is in closed form: (position / 0.4 m)^2 um for each kelvin of a
+// thermometer.
 
 #include <memory>
 #include <vector>
@@ -21,8 +22,8 @@ inline std::vector<compensation::TravelPlace> travel_judged() {
   return {{"x_0", 0.0}, {"x_200", 0.2}, {"x_400", 0.4}, {"x_600", 0.6}, {"x_800", 0.8}};
 }
 
-/// Two runs, of which the second warms by 10 K. The formula is exact; a constant of 1 um is said to leave less on left-out parts;
-/// "lost" is fitted at the first two places alone.
+/// Two runs, of which the second warms by 10 K. The formula is exact; a constant of 1 um is said to leave less on left-out
+/// parts; "lost" is fitted at the first two places alone.
 inline std::vector<compensation::StrategyMatrix> travel_matrices() {
   using namespace compensation;
   std::vector<StrategyMatrix> matrices;

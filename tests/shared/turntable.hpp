@@ -1,5 +1,6 @@
 #pragma once
-// A square table that turns on a square base, and a head above it that holds the tool: boxes of bricks, as a user writes them.
+// A square table that turns on a square base, and a head above it that holds the tool: boxes of bricks, as a user writes
+// them.
 
 #include <fmt/format.h>
 

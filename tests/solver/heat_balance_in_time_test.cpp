@@ -158,8 +158,8 @@ TEST(Pulses, OfAPrescribedTemperatureWithinHoursOfRestAreFollowed) {
 }
 
 TEST(Pulses, OfAPrescribedSurfaceWithinHoursOfRestStoreTheHeatOfFineSteps) {
-  // The same pulse at the end of a bar: no closed form for so short a bar, so against a run of small steps, which begins with
-  // the pulse: before it all is at rest.
+  // The same pulse at the end of a bar: no closed form for so short a bar, so against a run of small steps, which begins
+  // with the pulse: before it all is at rest.
   const mesh::Mesh mesh = fixtures::box_mesh({.size_m = {0.1, 0.02, 0.02}, .n = {10, 1, 1}});
   const auto run = [&](double pulse_s, double rest_s, const TransientOptions& options) {
     effects::HeatBalance balance;

@@ -47,8 +47,8 @@ TEST(ProbePoints, OneOfTwoIsTheClosedForm) {
 
 // A table of 10 m that is shifted by s, grows by g and turns by t (at its ends), each alone in two rows: variances of
 // s²/3, g²/3, t²/3. Of four rings on its middle line the two at the ends tell most. Each reads s +- g in x and +- t in y,
-// with noise r: each of the three is then known with a variance of 1 / (2 / r² + 3 / its square), and errors at three columns
-// of points are s + g x, t x with x = -1, 0, 1.
+// with noise r: each of the three is then known with a variance of 1 / (2 / r² + 3 / its square), and errors at three
+// columns of points are s + g x, t x with x = -1, 0, 1.
 TEST(ProbePoints, OfATablesFrameTheRingsAtItsEndsAreProbed) {
   scenarios::Scenario scenario;
   scenario.machine.emplace();

@@ -1,6 +1,7 @@
-/* The tables of model_data.h in the binary of a unit, which is compiled before the unit is known. The export writes the numbers at the end of the binary's
- * file (model_numbers() in model_data.cpp): numbers of eight bytes, their count, and a mark of eight characters. They are read when the binary is loaded,
- * before any function of the interface is called. Without them model_guid stays empty, and no instance is made. */
+/* The tables of model_data.h in the binary of a unit, which is compiled before the unit is known. The export writes the
+ * numbers at the end of the binary's file (model_numbers() in model_data.cpp): numbers of eight bytes, their count, and a
+ * mark of eight characters. They are read when the binary is loaded, before any function of the interface is called. Without
+ * them model_guid stays empty, and no instance is made. */
 #define _GNU_SOURCE
 #include <link.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* The types of FMI 2.0 for co-simulation and model exchange that fmi2.c uses, written from the standard (Modelica Association, FMI
- * 2.0.4). With DRIFTWRIGHT_STANDARD_HEADERS the standard's own headers take their place. */
+/* The types of FMI 2.0 for co-simulation and model exchange that fmi2.c uses, written from the standard (Modelica
+ * Association, FMI 2.0.4). With DRIFTWRIGHT_STANDARD_HEADERS the standard's own headers take their place. */
 #ifndef DRIFTWRIGHT_FMI2_INTERFACE_H
 #define DRIFTWRIGHT_FMI2_INTERFACE_H
 

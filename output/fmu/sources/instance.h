@@ -1,5 +1,5 @@
-/* One instance of the unit, as both versions of the interface use it: values by reference, modes, states. Statuses are numbered as in
- * fmi2Status and fmi3Status. */
+/* One instance of the unit, as both versions of the interface use it: values by reference, modes, states. Statuses are
+ * numbered as in fmi2Status and fmi3Status. */
 #ifndef DRIFTWRIGHT_INSTANCE_H
 #define DRIFTWRIGHT_INSTANCE_H
 

@@ -1,5 +1,6 @@
-/* What the interface (instance.c) asks of a model, which is machine.c or observer.c. All that a model remembers are numbers in one array,
- * so that its state is copied by copying it; what can be made anew from them is in the scratch, which is made at instantiation. */
+/* What the interface (instance.c) asks of a model, which is machine.c or observer.c. All that a model remembers are numbers
+ * in one array, so that its state is copied by copying it; what can be made anew from them is in the scratch, which is made
+ * at instantiation. */
 #ifndef DRIFTWRIGHT_MODEL_H
 #define DRIFTWRIGHT_MODEL_H
 
@@ -38,7 +39,8 @@ const char* model_check_drive(const double* inputs, const double* before);
 const char* model_before_input(double* saved, int input, double value);
 /* The start, from parameters and inputs at the start time. */
 void model_start(double* saved, void* scratch);
-/* To time + h, inputs held, the ambient going on at its rate. Returns 0, or what is wrong in words; states are then as before. */
+/* To time + h, inputs held, the ambient going on at its rate. Returns 0, or what is wrong in words; states are then as
+ * before. */
 const char* model_step(double* saved, void* scratch, double h_s);
 /* At an event. Returns 0, or what is wrong in words. */
 const char* model_event(double* saved, void* scratch);

@@ -1,14 +1,14 @@
-/* What one exported model is made of: the tables of model_data.c, which the export writes. Everything else here is the same in
- * every unit. SI and kelvin inside; what the importer sees is in the units of modelDescription.xml. Driftwright's own build defines
- * DRIFTWRIGHT_NUMBERS_ARE_READ: a binary for all units, whose tables are read when it is loaded. */
+/* What one exported model is made of: the tables of model_data.c, which the export writes. Everything else here is the same
+ * in every unit. SI and kelvin inside; what the importer sees is in the units of modelDescription.xml. Driftwright's own
+ * build defines DRIFTWRIGHT_NUMBERS_ARE_READ: a binary for all units, whose tables are read when it is loaded. */
 #ifndef DRIFTWRIGHT_MODEL_DATA_H
 #define DRIFTWRIGHT_MODEL_DATA_H
 
 #include "observer_filter.h"
 #include "probe_feedback.h"
 
-/* A law of one variable x >= 0 of the drive: 0 at x = 0, and behind it a polynomial of log x in Chebyshev's form in each piece.
- * Below the first piece it is what it is at the piece's beginning. */
+/* A law of one variable x >= 0 of the drive: 0 at x = 0, and behind it a polynomial of log x in Chebyshev's form in each
+ * piece. Below the first piece it is what it is at the piece's beginning. */
 typedef struct {
   int variable; /* index of the drive */
   int n_pieces;
@@ -45,8 +45,8 @@ typedef struct {
   const double* steps; /* n_steps pairs; names are indices of the drive */
 } drive_formula;
 
-/* What an output has of the place of an axis, which is a variable x of the drive: cubics' (z, ambient), cubics = c0 + c1 t + c2 t^2 + c3 t^3
- * with t from the beginning of the piece that x is in. */
+/* What an output has of the place of an axis, which is a variable x of the drive: cubics' (z, ambient), cubics = c0 + c1 t +
+ * c2 t^2 + c3 t^3 with t from the beginning of the piece that x is in. */
 typedef struct {
   int output, variable;
   int n_pieces;
@@ -58,7 +58,8 @@ typedef struct {
  * weights' z + ambient_share ambient + offset_K; the weights follow. It switches sources. */
 enum { kOnAbove, kOffBelow, kAmbientShare, kProbeOffset, kProbeWeights };
 
-/* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + ambient h0 + sum P_s b_s + sum c_e (ambient g_e + o_e). Matrices by rows. */
+/* dz/dt = -K z + f, M = 1: K = K0 + sum c_e G_e, f = f0 + ambient h0 + sum P_s b_s + sum c_e (ambient g_e + o_e). Matrices
+ * by rows. */
 typedef struct {
   int n, n_drive, n_sources, n_exchanges, n_outputs;
   const double* conduction;    /* K0 */
