@@ -121,7 +121,7 @@ std::string draw_machine(const MachinePicture& picture) {
   if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
   if (picture.field && picture.field->value.size() != mesh.n_nodes())
     throw std::logic_error("draw_machine: a field of another mesh");
-  mesh::MachineSkin skin = mesh::skin_of(mesh);
+  mesh::MachineSkin skin = mesh::skin_of(mesh, picture.field ? picture.field->surface : -1);
   if (picture.field) {  // kept machines know regions alone, and a picture must not tell whether the machine was known
     for (std::size_t i = 0; i < skin.part.size(); ++i) skin.part[i] = skin.region[i];
   }
