@@ -80,15 +80,15 @@ TEST(MachinePicture, ColoursOneSurfaceAndNoneOfItsNeighbours) {
   };
   const std::vector<std::string> one = views({"film", on_x0, surface}), grey = views({"film", inside});
   ASSERT_EQ(one.size(), 2U);
-  EXPECT_EQ(one[0], grey[0]) << "from +x, +y no face of x0 is seen";
-  EXPECT_NE(one[1], grey[1]) << "from -x, -y x0 is seen";
+  EXPECT_TRUE(one[0] == grey[0]) << "from +x, +y no face of x0 is seen";
+  EXPECT_TRUE(one[1] != grey[1]) << "from -x, -y x0 is seen";
   mesh.surfaces.push_back("a/b@x0");
   for (const int facet : mesh.facets_on(surface)) {
     const auto of_facet = mesh.facets.nodes(facet);
     const std::vector<int> nodes(of_facet.begin(), of_facet.end());  // add() may move them
     mesh.facets.add(mesh.facets.shape[static_cast<std::size_t>(facet)], nodes, static_cast<int>(mesh.surfaces.size()) - 1);
   }
-  EXPECT_EQ(views({"film", on_x0, surface}), one);
+  EXPECT_TRUE(views({"film", on_x0, surface}) == one) << "its faces belong to a side of a joint, too";
 }
 
 TEST(MachinePicture, KeepsAllNamesInside) {
