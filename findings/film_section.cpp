@@ -57,11 +57,14 @@ void add_films(output::Section& section, std::span<const scenarios::MappedFilm> 
     const auto largest = std::max_element(film.states.begin(), film.states.end(),
                                           [](const auto& a, const auto& b) { return a.mapped_W_K < b.mapped_W_K; });
     if (!(film.uncovered_m2 < film.area_m2)) continue;  // no node has a value
+    const auto surface =
+        static_cast<int>(std::find(mesh.surfaces.begin(), mesh.surfaces.end(), film.surface) - mesh.surfaces.begin());
     const std::string title = film.name + state_words(film, *largest);
     add(section,
-        output::Picture{.title = title,
-                        .svg = output::draw_machine(
-                            {.mesh = &mesh, .field = output::PictureField{"film [W/(m² K)]", largest->node_film_W_m2K}})});
+        output::Picture{
+            .title = title,
+            .svg = output::draw_machine(
+                {.mesh = &mesh, .field = output::PictureField{"film [W/(m² K)]", largest->node_film_W_m2K, surface}})});
   }
 }
 

@@ -27,12 +27,13 @@ std::vector<std::array<int, 3>> triangles_of(CellShape shape, const std::vector<
 
 }  // namespace
 
-MachineSkin skin_of(const Mesh& mesh) {
+MachineSkin skin_of(const Mesh& mesh, int before_others) {
   std::map<FaceKey, int> named;
   for (int f = 0; f < mesh.facets.size(); ++f) {
     const auto nodes = mesh.facets.nodes(f);
     const int corners = n_corners_of(mesh.facets.shape[static_cast<std::size_t>(f)]);
-    named[face_key(nodes.first(static_cast<std::size_t>(corners)))] = mesh.facets.group[static_cast<std::size_t>(f)];
+    int& name = named.try_emplace(face_key(nodes.first(static_cast<std::size_t>(corners))), -1).first->second;
+    if (name < 0 || name != before_others) name = mesh.facets.group[static_cast<std::size_t>(f)];
   }
   MachineSkin skin;
   int n_faces = 0;

@@ -17,6 +17,7 @@ struct MachineSkin {
   std::vector<int> face;     ///< of each triangle: number of its outer face, in the order of FaceTable
 };
 /// In the order of the mesh's faces: the same mesh gives the same triangles.
-[[nodiscard]] MachineSkin skin_of(const Mesh& mesh);
+/// @param before_others  surface whose faces have its name even where they belong to other surfaces, too; else the last has it
+[[nodiscard]] MachineSkin skin_of(const Mesh& mesh, int before_others = -1);
 
 }  // namespace driftwright::mesh

@@ -29,9 +29,11 @@ bool is_joint_side(const mesh::Mesh& mesh, int surface) {
   return surface >= 0 && mesh.surfaces[static_cast<std::size_t>(surface)].find('@') != std::string::npos;
 }
 
+constexpr std::array<float, 3> kWithoutValue = {0.82F, 0.84F, 0.86F};  // grey; also of faces without a name
+
 /// The dark end of the map would hide how a cold body is shaped.
 std::array<float, 3> colour_of(double share) {
-  if (std::isnan(share)) return {0.82F, 0.84F, 0.86F};
+  if (std::isnan(share)) return kWithoutValue;
   return inferno(0.15 + 0.85 * share);
 }
 
@@ -119,7 +121,7 @@ std::string draw_machine(const MachinePicture& picture) {
   if (mesh.cells.size() == 0) throw std::logic_error("draw_machine: a mesh without cells");
   if (picture.field && picture.field->value.size() != mesh.n_nodes())
     throw std::logic_error("draw_machine: a field of another mesh");
-  mesh::MachineSkin skin = mesh::skin_of(mesh);
+  mesh::MachineSkin skin = mesh::skin_of(mesh, picture.field ? picture.field->surface : -1);
   if (picture.field) {  // kept machines know regions alone, and a picture must not tell whether the machine was known
     for (std::size_t i = 0; i < skin.part.size(); ++i) skin.part[i] = skin.region[i];
   }
@@ -142,6 +144,17 @@ std::string draw_machine(const MachinePicture& picture) {
     high = std::max(picture.field->value.maxCoeff<Eigen::PropagateNumbers>(),
                     low + 0.01);  // what differs by less has one colour
     for (double v : picture.field->value) surface.colour.push_back(colour_of((v - low) / (high - low)));
+    // Nodes on the edge of a surface belong to its neighbours, too: these get grey points of their own.
+    const Eigen::Index n = surface.point.cols();
+    if (const int only = picture.field->surface; only >= 0) {
+      surface.point.conservativeResize(Eigen::NoChange, 2 * n);
+      surface.point.rightCols(n) = surface.point.leftCols(n).eval();
+      surface.colour.resize(static_cast<std::size_t>(2 * n), kWithoutValue);
+      for (std::size_t i = 0; i < skin.triangle.size(); ++i) {
+        if (skin.surface[i] == only) continue;
+        for (int& corner : surface.triangle[i]) corner += static_cast<int>(n);
+      }
+    }
   } else {
     // Points that surfaces share would mix their colours: each triangle has points of its own.
     Eigen::Matrix3Xd own(3, 3 * static_cast<Eigen::Index>(skin.triangle.size()));
@@ -153,7 +166,7 @@ std::string draw_machine(const MachinePicture& picture) {
         const auto to = static_cast<int>(3 * i) + k;
         own.col(to) = surface.point.col(skin.triangle[i][k]);
         surface.triangle[i][k] = to;
-        surface.colour.push_back(name >= 0 ? distinct_colour(name) : std::array<float, 3>{0.82F, 0.84F, 0.86F});
+        surface.colour.push_back(name >= 0 ? distinct_colour(name) : kWithoutValue);
       }
     }
     surface.point = own;

@@ -21,6 +21,7 @@ struct PictureMark {
 struct PictureField {
   std::string label;      ///< with its unit: "temperature [°C]"
   Eigen::VectorXd value;  ///< n_nodes; NaN is drawn grey. At least one node must have a value
+  int surface = -1;       ///< index of the surface that alone has the quantity; other faces are grey. -1: all have it
 };
 
 struct MachinePicture {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -44,15 +45,21 @@ Coefficients interpolated(const std::function<double(double)>& f, double low, do
   return c;
 }
 
+/// Within kTolerance, or within the rounding of x: a law has few digits where it is much less than x makes of it, as just above
+/// the speed at which it begins.
 /// @param at_rest  value that was subtracted from the law; it sets the rounding error of f
 bool keeps_to(const Coefficients& c, const std::function<double(double)>& f, double at_rest, double low, double high) {
-  double most = std::abs(at_rest), error = 0.0;
+  // exp(log x) is off by half a unit of log x, and the law by a few of its own: 4 together.
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max({1.0, std::abs(low), std::abs(high)});
+  double most = std::abs(at_rest), error = 0.0, steepest = 0.0, before = f(low);
   for (int k = 0; k < kChecks; ++k) {
     const double s = -1.0 + 2.0 * k / (kChecks - 1), value = f(0.5 * (low + high) + 0.5 * (high - low) * s);
     most = std::max(most, std::abs(value));
+    steepest = std::max(steepest, std::abs(value - before) * (kChecks - 1) / (high - low));
     error = std::max(error, std::abs(value - sum(c.data(), s)));
+    before = value;
   }
-  return error <= kTolerance * most;
+  return error <= std::max(kTolerance * most, rounding * steepest);
 }
 
 /// @returns false if more than kMostPieces are needed

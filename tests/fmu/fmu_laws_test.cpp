@@ -149,6 +149,17 @@ TEST_P(FmuOfLaws, WithLawsOfTemperaturesIsWhatPredictSaysWhateverTheStep) {
   }
 }
 
+/// Films of a file at 0, 3000 and 6000 rpm, linear between them.
+TEST_P(FmuOfLaws, TakesFilmsOfAFileAtSeveralSpeeds) {
+  std::string yaml = replaced(read_text("scenarios/column_film.yaml"), "shift: [[60 min, 3000 rpm]",
+                              "shift: [[30 min, 3000 rpm], [30 min, 1700 rpm]");
+  for (const std::string file : {"parts/column.inp", "films/column_front.csv"})
+    yaml = replaced(yaml, file, std::filesystem::absolute("scenarios/" + file).string());
+  const Live live("column_film.yaml", yaml, "shift");
+  live.expect_predicted(import_unit(Unit({.model = live.fmu, .version = GetParam()}, name("film_field")), live.speed(),
+                                    live.outputs, {.step_s = 60.0}));
+}
+
 TEST_P(FmuOfLaws, WithLawsOfTemperaturesInModelExchangeIsTheSame) {
   const Live& live = oiled();
   Record rows = live.speed();

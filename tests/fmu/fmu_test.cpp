@@ -304,6 +304,12 @@ TEST(DriveLaw, IsMetToRoundingWhateverItsFormula) {
   for (double n : {600.0, 1199.99, 1200.01, 3000.0})
     EXPECT_NEAR(stage->at({n, 0.0}), geared({.speed_rpm = n}), 1e-11 * n) << n << " rpm";
   EXPECT_NEAR(stage->at({1200.0, 0.0}), 1200.0, 1e-9 * 1200.0);  // at the very speed of the change: a piece 1e-9 wide
+  // As a film of a file between two of its speeds: nothing up to 1200 rpm, and few digits just above.
+  const auto begins = [](const Drive& d) { return std::max(d.speed_rpm - 1200.0, 0.0) / 800.0; };
+  const std::optional<DriveLaw> from_1200 = tabulated(begins, ranges);
+  ASSERT_TRUE(from_1200);
+  for (double n : {0.0, 600.0, 1199.99, 1200.01, 1201.0, 1999.0, 3000.0})
+    EXPECT_NEAR(from_1200->at({n, 0.0}), begins({.speed_rpm = n}), 2e-14) << n << " rpm";
   EXPECT_TRUE(tabulated([](const Drive&) { return 5.0; }, ranges)->terms.empty());
   EXPECT_FALSE(tabulated([](const Drive& d) { return d.speed_rpm * d.feed_m_s[0]; }, ranges)) << "two variables together";
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -56,6 +57,38 @@ TEST(MachinePicture, LeavesNodesWithoutAValueOutOfTheRange) {
   EXPECT_THAT(whole, HasSubstr(">30.0<"));
   EXPECT_THAT(half, HasSubstr(">25.0<"));
   EXPECT_THAT(half, Not(HasSubstr(">30.0<")));
+}
+
+// Nodes on the edge of a surface are nodes of its neighbours, which must not get its colour. Its faces may belong to a surface
+// that comes later, too, such as a joint's side.
+TEST(MachinePicture, ColoursOneSurfaceAndNoneOfItsNeighbours) {
+  mesh::Mesh mesh = box();
+  const auto x0 = std::find(mesh.surfaces.begin(), mesh.surfaces.end(), "x0");
+  ASSERT_NE(x0, mesh.surfaces.end());
+  const auto surface = static_cast<int>(x0 - mesh.surfaces.begin());
+  Eigen::VectorXd on_x0 = Eigen::VectorXd::Constant(mesh.n_nodes(), std::nan("")), inside = on_x0;
+  for (Eigen::Index i = 0; i < mesh.n_nodes(); ++i) {
+    if (mesh.coords(0, i) == 0.0) on_x0[i] = 5.0 + mesh.coords(2, i);
+    if ((mesh.coords.col(i) - Eigen::Vector3d(0.05, 0.05, 0.1)).norm() < 1e-9) inside[i] = 5.0;
+  }
+  const auto views = [&](const PictureField& field) {
+    std::vector<std::string> png;
+    const std::string drawn = draw_machine({.mesh = &mesh, .field = field}), key = "base64,";
+    for (std::size_t at = drawn.find(key); at != std::string::npos; at = drawn.find(key, at + 1))
+      png.push_back(drawn.substr(at, drawn.find('"', at) - at));
+    return png;
+  };
+  const std::vector<std::string> one = views({"film", on_x0, surface}), grey = views({"film", inside});
+  ASSERT_EQ(one.size(), 2U);
+  EXPECT_TRUE(one[0] == grey[0]) << "from +x, +y no face of x0 is seen";
+  EXPECT_TRUE(one[1] != grey[1]) << "from -x, -y x0 is seen";
+  mesh.surfaces.push_back("a/b@x0");
+  for (const int facet : mesh.facets_on(surface)) {
+    const auto of_facet = mesh.facets.nodes(facet);
+    const std::vector<int> nodes(of_facet.begin(), of_facet.end());  // add() may move them
+    mesh.facets.add(mesh.facets.shape[static_cast<std::size_t>(facet)], nodes, static_cast<int>(mesh.surfaces.size()) - 1);
+  }
+  EXPECT_TRUE(views({"film", on_x0, surface}) == one) << "its faces belong to a side of a joint, too";
 }
 
 TEST(MachinePicture, KeepsAllNamesInside) {

@@ -16,13 +16,13 @@ from pathlib import Path
 sys.path.append(str(Path(__file__).resolve().parents[1] / "shared"))
 from result_schema import errors
 
-PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/how-to/controls.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
+PAGES = ["README.md", "docs/start/commands.md", "docs/how-to/scenario.md", "docs/how-to/own_law.md", "docs/how-to/feed_axis.md", "docs/how-to/films.md", "docs/how-to/coolant_channel.md", "docs/how-to/meshes.md", "docs/start/first_diagnosis.md", "docs/start/diagnosis.md", "docs/how-to/identification.md", "docs/how-to/prediction.md", "docs/how-to/validation.md", "docs/how-to/probing.md", "docs/how-to/schedule.md", "docs/how-to/sweep.md", "docs/how-to/fmu.md", "docs/how-to/controls.md", "docs/reference/record.md", "docs/how-to/view.md", "docs/how-to/warmup.md", "docs/how-to/test_planning.md"]
 # Shorter commands of these pages, or tests of the verb, do the same: `diagnose` of the first machine, `validate_records`, `schedule_verb`, `place_verb`, `warmup_verb`, `Init.OfADrawingRunsAtOnce`,
-# `own_records` for `calibrate`.
+# `own_records` for `calibrate`, the same of a small drawing for `mesh --convergence`.
 # 20 parts last so long that the FP3 is reduced again.
 AT_LENGTH = ("driftwright diagnose scenarios/fp3_spindle.yaml", "driftwright validate results/identified/monday.yaml", "driftwright schedule scenarios/fp3_spindle.yaml --program scenarios/parts/fp3_part.ngc --start",
              "driftwright place scenarios/fp3_spindle.yaml", "driftwright warmup scenarios/fp3_spindle.yaml", "driftwright predict scenarios/fp3_spindle.yaml --cyclogram chaotic --start results/warmup/",
-             "driftwright run results/mill/mill.yaml", "driftwright validate scenarios/ball_screw.yaml", "driftwright export --model results/axis/", "driftwright calibrate scenarios/fp3_spindle.yaml")
+             "driftwright run results/mill/mill.yaml", "driftwright validate scenarios/ball_screw.yaml", "driftwright export --model results/axis/", "driftwright calibrate scenarios/fp3_spindle.yaml", "driftwright mesh scenarios/fp3_spindle.yaml --convergence")
 # What writes the files that later commands read. This one leaves the families of cyclograms out, which take half of its time and which `continued_records` has of a small machine.
 SHORTER = {"driftwright validate scenarios/fp3_spindle.yaml -o results/validation":
            "sed '/^programme:/,/^study:/{/^study:/!d}' scenarios/fp3_spindle.yaml > fp3_study.yaml && driftwright validate fp3_study.yaml -o results/validation"}
