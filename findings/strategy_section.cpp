@@ -145,6 +145,11 @@ std::string correction_step(const StrategyMatrix& m, const scenarios::Scenario& 
 /// What to do with the chosen strategy. @param chosen  null: none
 std::vector<std::string> steps_with(const StrategyMatrix& m, const JudgedStrategy* chosen,
                                     const scenarios::Scenario& scenario, const output::Provenance& made_by) {
+  if (!chosen && !m.choice.why.empty())
+    return {
+        "Do not correct with what was fitted here. See whether each training record has the units and the sign of the "
+        "others, "
+        "and add records in which the machine drifts as it does in the judged ones."};
   if (!chosen)
     return {
         "Add training runs, at least two with different cyclograms (`--train`, or `train` under `validation`): parts of "
@@ -297,10 +302,12 @@ Section strategy_section(const StrategyMatrix& m, const scenarios::Scenario& sce
     add(section, Value{.key = "why_chosen", .datum = m.choice.why});
     add(section, verdict_of(m, *chosen));
   } else {
-    add(section, output::Verdict{.key = "",
-                                 .title = "No strategy is chosen",
-                                 .text = "Too little can be left out of the training runs to choose one. The picture shows "
-                                         "what each strategy leaves on the judged runs."});
+    add(section,
+        output::Verdict{
+            .key = "",
+            .title = "No strategy is chosen",
+            .text = (m.choice.why.empty() ? "Too little can be left out of the training runs to choose one" : m.choice.why) +
+                    ". The picture shows what each strategy leaves on the judged runs."});
   }
   add(section, intact_map(m));
   if (std::optional<output::Plot> course = hardest_course(m)) add(section, std::move(*course));

@@ -78,7 +78,7 @@ def by_strategies(case, program, folder, options=()):
         return {"why": why(log)}
     with open(os.path.join(folder, "validate", "summary.json"), encoding="utf-8") as file:
         validation = json.load(file)["validation"]
-    strategies, chosen = validation["strategies"], validation.get("chosen")
+    strategies, chosen = validation["strategies"], validation.get("chosen", "no correction")  # nothing is chosen: the axis stays as it is
     left = {}
     with open(os.path.join(folder, "validate", "strategies.csv"), encoding="utf-8") as file:
         for row in csv.DictReader(line for line in file if not line.startswith("#")):
@@ -93,7 +93,7 @@ def by_strategies(case, program, folder, options=()):
     left = {name: (math.sqrt(guarded / n), math.sqrt(bare / n)) for name, (n, guarded, bare) in left.items()}
     mine = next((s for s in strategies if s["name"] == chosen and chosen in left), None)
     if not mine:
-        return {"why": "no strategy was chosen: too little can be left out of the training runs"}
+        return {"why": "no strategy was chosen"}
     return {"name": chosen, "guarded": left[chosen][0], "bare": left[chosen][1], "covered": mine["covered_percent"], "all": {name: of[0] for name, of in left.items()},
             "validation": validation}
 

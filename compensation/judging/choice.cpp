@@ -8,6 +8,8 @@
 #include <limits>
 #include <map>
 
+#include "compensation/judging/strategies.hpp"
+
 namespace driftwright::compensation {
 namespace {
 
@@ -53,7 +55,10 @@ double left_out_um(const DeployedPredictor& strategy) {
   return std::exp(logarithms / static_cast<double>(squares_of.size()));
 }
 
-Choice choose(std::span<const DeployedPredictor> strategies) {
+namespace {
+
+/// The choice among strategies, of which no correction is one like the others.
+Choice chosen_of(std::span<const DeployedPredictor> strategies) {
   const DeployedPredictor *best = nullptr, *mean = nullptr;
   for (const DeployedPredictor& d : strategies) {
     if (d.fold_errors.empty()) continue;
@@ -87,6 +92,23 @@ Choice choose(std::span<const DeployedPredictor> strategies) {
   return because(simplest, (&simplest == best ? "the least of all"
                                               : "the simplest within one standard error of the least; " + said(*best)) +
                                (mean ? "; " + said(*mean) : ""));
+}
+
+}  // namespace
+
+Choice choose(std::span<const DeployedPredictor> strategies) {
+  Choice choice = chosen_of(strategies);
+  const auto named = [&](const std::string& name) {
+    return std::find_if(strategies.begin(), strategies.end(), [&](const DeployedPredictor& d) { return d.name == name; });
+  };
+  const auto chosen = named(choice.name), none = named(kNoCorrection);
+  if (chosen == strategies.end() || none == strategies.end() || chosen == none || none->fold_errors.empty()) return choice;
+  const double left = left_out_um(*chosen), uncorrected = left_out_um(*none);
+  if (left < uncorrected) return choice;
+  return {"",
+          fmt::format("On the parts of the training runs that were left out '{}' leaves {:.3g} µm, and no correction {:.3g} "
+                      "µm: a correction must gain there",
+                      chosen->name, left, uncorrected)};
 }
 
 }  // namespace driftwright::compensation

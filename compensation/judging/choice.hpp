@@ -20,8 +20,8 @@ inline constexpr const char* kBlend = "blend";
 [[nodiscard]] double left_out_um(const DeployedPredictor& strategy);
 
 struct Choice {
-  std::string name = {};  ///< "": nothing could be left out of the training runs
-  std::string why = {};   ///< one sentence
+  std::string name = {};  ///< "": nothing could be left out of the training runs, or nothing gains there
+  std::string why = {};   ///< one sentence; empty: nothing could be left out
 };
 
 /// Chooses in this order:
@@ -31,6 +31,7 @@ struct Choice {
 /// - else the blend, unless another strategy leaves less than 1 / kAlike of the blend's error and the difference is
 ///   significant: two standard errors of the mean square, fold by fold;
 /// - else the simplest strategy whose mean square is within one standard error of the best one's.
+/// What is to be chosen must leave less than no correction on left-out parts; else nothing is.
 /// @param strategies  from the simplest to the most elaborate
 /// Source: the rule of one standard error: Breiman et al., Classification and Regression Trees (1984), 3.4.3; the mean of
 /// different predictions compared with the best of them: Stock & Watson, J. Forecasting 23 (2004) 405.

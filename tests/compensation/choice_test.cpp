@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "compensation/judging/folds.hpp"
+#include "compensation/judging/strategies.hpp"
 #include "compensation/predictors/blended_formula.hpp"
 #include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/driven_predictor.hpp"
@@ -186,6 +187,16 @@ TEST(Choice, TakesTheSimplestWithinOneStandardErrorOfTheBest) {
   EXPECT_EQ(chosen_of({with_errors("simple", {3.0, 3.1, 3.0, 3.1}), with_errors("best", {1.0, 1.0, 1.0, 1.0})}), "best");
   EXPECT_EQ(chosen_of({with_errors("unfitted", {}), with_errors("best", {1.0, 1.0, 1.0, 1.0})}), "best");
   EXPECT_EQ(chosen_of({with_errors("unfitted", {})}), "");
+}
+
+TEST(Choice, IsNothingWhereCorrectionsDoNotGain) {
+  const DeployedPredictor none = with_errors(kNoCorrection, {2.0, 3.0, 3.0, 3.0});
+  const DeployedPredictor worse = with_errors(kBlend, {1.0, 4.0, 4.0, 4.0}),
+                          better = with_errors(kBlend, {2.0, 2.9, 2.9, 3.0});
+  EXPECT_EQ(chosen_of({none, worse}), "");
+  EXPECT_NE(choose(std::vector{none, worse}).why, "");
+  EXPECT_EQ(chosen_of({none, model_with_errors("model", {3.1, 3.0, 3.0, 3.0})}), "");
+  EXPECT_EQ(chosen_of({none, better}), kBlend);
 }
 
 TEST(Blend, OfFormulasIsTheMeanOfWhatTheySay) {
