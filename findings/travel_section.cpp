@@ -119,7 +119,7 @@ Section travel_section(const studies::JudgedTravel& judged, const output::Proven
     add(section, output::Value{.key = "chosen", .datum = s.name});
     add(section, output::Value{.key = "why_chosen", .datum = t.why_chosen});
     add(section, output::Verdict{.kind = is_kept ? output::Verdict::Kind::kGood : output::Verdict::Kind::kBad,
-                                 .title = fmt::format("{} the tolerance anywhere on the travel: {}",
+                                 .title = fmt::format("{} the tolerance over the whole travel: {}",
                                                       is_kept ? "Keeps" : "Does not keep", s.name),
                                  .text = answer_text(t, s, first)});
     add(section, peaks_plot(t, s, tolerance_um));

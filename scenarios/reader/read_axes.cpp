@@ -286,13 +286,24 @@ void require_within_range(const std::vector<MovingAxis>& axes, const Cyclogram& 
   for (const MovingAxis& axis : axes) {
     const Cyclogram::Column* column = column_of(axis, cyclogram);
     if (!column) continue;
-    for (std::size_t i = 0; i < column->rows.value.size(); ++i) {
-      if (axis.allows(axis.unit_SI() * column->rows.value[i])) continue;
-      throw InputError(axis.where,
-                       fmt::format("cyclogram '{}' moves axis '{}' to {:g} {} in row {} of column '{}', at {:g} min; its "
-                                   "`range` is {}. Correct the row or the range",
-                                   cyclogram.name, axis.name, column->rows.value[i], axis.unit(), i + 1, column->name,
-                                   column->rows.time_s[i] / 60.0, range_words(axis)));
+    const std::string stroke_name = "stroke_" + axis.column.substr(std::string_view("position_").size());
+    const Cyclogram::Column* stroke = axis.way.turns ? nullptr : cyclogram.column(stroke_name);
+    if (stroke && stroke->unit != axis.unit()) stroke = nullptr;
+    for (const Cyclogram::Column* rows_of : {column, stroke}) {
+      if (!rows_of) continue;
+      for (std::size_t i = 0; i < rows_of->rows.time_s.size(); ++i) {
+        const double time_s = rows_of->rows.time_s[i], middle = column->at(time_s),
+                     half = stroke ? 0.5 * stroke->at(time_s) : 0.0;
+        const bool allows_low = axis.allows(axis.unit_SI() * (middle - half));
+        if (allows_low && axis.allows(axis.unit_SI() * (middle + half))) continue;
+        throw InputError(
+            axis.where,
+            fmt::format("cyclogram '{}' moves axis '{}' to {:g} {} in row {} of column '{}', at {:g} min{}; its "
+                        "`range` is {}. Correct the row or the range",
+                        cyclogram.name, axis.name, allows_low ? middle + half : middle - half, axis.unit(), i + 1,
+                        rows_of->name, time_s / 60.0,
+                        half > 0.0 ? fmt::format(", with its stroke of {:g} mm", 2.0 * half) : "", range_words(axis)));
+      }
     }
   }
 }

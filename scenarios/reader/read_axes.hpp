@@ -69,7 +69,8 @@ struct PoseStretch {
 /// True if the cyclogram has a pose other than that of the axes.
 [[nodiscard]] bool moves_axes(const std::vector<MovingAxis>& axes, const Cyclogram& cyclogram);
 
-/// @throws InputError  at the axis, for a row of the cyclogram outside its range
+/// @throws InputError  at the axis, for a row of the cyclogram outside its range; position ± stroke / 2 where there is a
+///                     column of the stroke
 void require_within_range(const std::vector<MovingAxis>& axes, const Cyclogram& cyclogram);
 /// For everything that holds the machine at one pose. @throws InputError  at the axis, if the cyclogram moves it
 void require_resting(const std::vector<MovingAxis>& axes, const Cyclogram& cyclogram);

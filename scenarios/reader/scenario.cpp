@@ -52,6 +52,20 @@ void keep_wanted_columns(const MachineModel& machine, Cyclogram& cyclogram) {
   });
 }
 
+/// @throws InputError  for a position that is written in rows of a machine with `axes` and moves nothing
+void require_known_positions(const MachineModel& machine, const ConfigMap& rows, const Cyclogram& cyclogram) {
+  if (machine.axes.empty()) return;
+  std::vector<std::string> known = wanted_columns(machine, cyclogram.name);
+  for (const MovingAxis& axis : machine.axes) known.push_back(axis.column);
+  for (const Cyclogram::Column& c : cyclogram.columns) {
+    if (!c.name.starts_with("position_")) continue;
+    if (std::any_of(known.begin(), known.end(), [&](const auto& name) { return name == c.name || name == c.header(); }))
+      continue;
+    rows.fail("columns", fmt::format("'{}' moves nothing; columns of `axes` and effects are {}.{}", c.header(),
+                                     fmt::join(known, ", "), did_you_mean(c.name, known)));
+  }
+}
+
 /// Gives displacements with a `screw` what the effects `feed_axis` say of it.
 void find_screws(MachineModel& m) {
   for (DisplacementOutput& d : m.displacements) {
@@ -378,8 +392,12 @@ Scenario read_scenario(const ConfigMap& top) {
     const ConfigMap cyclograms = in.map("cyclograms");
     for (const std::string& name : cyclograms.keys()) {
       Cyclogram& read = scenario.cyclograms.emplace_back(read_cyclogram(cyclograms, name));
-      const bool is_program = cyclograms.is_map(name) && cyclograms.map(name).description().when_key == "nc_program";
-      if (is_program) keep_wanted_columns(*scenario.machine, read);
+      if (!cyclograms.is_map(name)) continue;
+      const ConfigMap map = cyclograms.map(name);
+      if (map.description().when_key == "rows") require_known_positions(*scenario.machine, map, read);
+      if (map.description().when_key != "nc_program") continue;
+      require_within_range(scenario.machine->axes, read);  // while it has the strokes that nobody asks for
+      keep_wanted_columns(*scenario.machine, read);
     }
     if (scenario.cyclograms.empty())
       in.fail("cyclograms", "there is no cyclogram; at least one list of [duration, speed] is required");

@@ -28,7 +28,7 @@ TEST(TravelSection, SaysWhatIsLeftWithOneCorrectionAndWithAll) {
   const output::Section section = travel_section(judged(), {"1", "axis.yaml"});
   EXPECT_THAT(
       output::section_text(section, {.details = false}),
-      AllOf(HasSubstr("Keeps the tolerance anywhere on the travel: exact"),
+      AllOf(HasSubstr("Keeps the tolerance over the whole travel: exact"),
             HasSubstr("Corrections for 0, 400 and 800 mm, straight between them, leave at most 2.5 µm (6 % of 40.0 µm"),
             HasSubstr("mm on warm"), HasSubstr("leaves 30.0 µm at best, the one for 400 mm"),
             HasSubstr("models/x_0/exact.json --model"), HasSubstr("--as linuxcnc")));

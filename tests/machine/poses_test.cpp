@@ -236,6 +236,17 @@ TEST(Axes, RefusePosesThatTheMachineCannotHave) {
                  "no region 'tabel'", "Did you mean 'table'");
   const std::string beyond = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, 0 mm], [1 h, 0 rpm, 900 mm]]}";
   EXPECT_REFUSED(Slide{.rows = beyond}.read(), "slide.yaml:", "900 mm in row 2", "range");
+  const std::string stroke = "{columns: [duration, speed, position_x_mm, stroke_x_mm], rows: [[1 h, 0 rpm, ";
+  EXPECT_REFUSED(Slide{.rows = stroke + "600 mm, 500 mm]]}"}.read(), "slide.yaml:", "850 mm in row 1", "stroke of 500 mm");
+  EXPECT_REFUSED(Slide{.rows = stroke + "200 mm, 500 mm]]}"}.read(), "-50 mm in row 1");
+  EXPECT_NO_THROW((void)Slide{.rows = stroke + "400 mm, 800 mm]]}"}.read());
+  write_file("slide.ngc", "G21 G90\nG1 X900 F6000\nM2\n");  // one row of 9 s, whose middle is within the range
+  EXPECT_REFUSED(Slide{.rows = "{nc_program: slide.ngc}"}.read(), "900 mm in row 1", "stroke of 900 mm");
+}
+
+TEST(Axes, RefuseAPositionThatMovesNothing) {
+  const std::string rows = "{columns: [duration, speed, position_y_mm], rows: [[1 h, 0 rpm, 400 mm]]}";
+  EXPECT_REFUSED(Slide{.rows = rows}.read(), "slide.yaml:", "'position_y_mm' moves nothing", "position_x");
 }
 
 TEST(Axes, RefuseMovesWhereTheModelHasOnePose) {
