@@ -114,9 +114,10 @@ std::shared_ptr<const solver::FullSystem> with_joints_of(const solver::FullSyste
   return moved;
 }
 
+/// The other half of the tolerance is for the compression.
 bool is_met(const solver::ReductionError& error, const solver::ReductionOptions& allowed) {
-  return error.temperature_K <= allowed.temperature_K && error.displacement_m <= allowed.displacement_m &&
-         error.angle_rad <= allowed.angle_rad;
+  return error.temperature_K <= 0.5 * allowed.temperature_K && error.displacement_m <= 0.5 * allowed.displacement_m &&
+         error.angle_rad <= 0.5 * allowed.angle_rad;
 }
 
 /// Jumps of V across the points of a joint, one row each.
@@ -194,16 +195,13 @@ TravelReduction reduce_over_travel(const MachineModel& model, const Machine& mac
                                    "µrad at {}; {:.2g} K, {:.2g} µm and {:.2g} µrad are allowed. Raise "
                                    "`reduction_tolerance` in `solver`, narrow the `range` of the axes, or take `model: full`",
                                    kMostTraining, error.temperature_K, 1e6 * error.displacement_m, 1e6 * error.angle_rad,
-                                   pose_words(there.axes, pose_of(there.axes)), options.temperature_K,
-                                   1e6 * options.displacement_m, 1e6 * options.angle_rad));
+                                   pose_words(there.axes, pose_of(there.axes)), 0.5 * options.temperature_K,
+                                   0.5e6 * options.displacement_m, 0.5e6 * options.angle_rad));
     n_checked = 0;
     worst = {};
     if (is_elastic) elastic.add(turned_back(mesh, motions, elastic_columns(posed, reduction.steady_states())));
   }
-  TravelReduction made{.reduction = reduction.result(), .travel = {.moves = moves, .n_training = n_training}};
-  made.reduction.error.temperature_K += worst.temperature_K;
-  made.reduction.error.displacement_m += worst.displacement_m;
-  made.reduction.error.angle_rad += worst.angle_rad;
+  TravelReduction made{.reduction = reduction.result(worst), .travel = {.moves = moves, .n_training = n_training}};
   Travel& travel = made.travel;
   travel.temperature = made.reduction.basis;
   travel.rest_outputs = made.reduction.basis.transpose() * rest;

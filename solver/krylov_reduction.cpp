@@ -246,7 +246,11 @@ class Reducer {
     const Eigen::MatrixXd loads = inputs_[first_].loads.leftCols(inputs_[first_].n_steps());
     return basis_.vectors() * dense::solve_definite(basis_.reduced_stiffness(first_), basis_.vectors().transpose() * loads);
   }
-  [[nodiscard]] Reduction result() {
+  /// @param elsewhere  error at systems that were added and forgotten
+  [[nodiscard]] Reduction result(const ReductionError& elsewhere = {}) {
+    ReductionError& error = result_.error;
+    error = {std::max(error.temperature_K, elsewhere.temperature_K),
+             std::max(error.displacement_m, elsewhere.displacement_m), std::max(error.angle_rad, elsewhere.angle_rad)};
     if (!is_of_all_) {
       first_ = 0;
       latest_ = step_test();
@@ -494,8 +498,8 @@ void PoseReduction::forget() {
 Eigen::MatrixXd PoseReduction::steady_states() const {
   return parts_->reducer.steady_states();
 }
-Reduction PoseReduction::result() {
-  return parts_->reducer.result();
+Reduction PoseReduction::result(const ReductionError& elsewhere) {
+  return parts_->reducer.result(elsewhere);
 }
 
 }  // namespace driftwright::solver

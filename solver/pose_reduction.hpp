@@ -27,8 +27,9 @@ class PoseReduction {
   void forget();
   /// Steady states of the latest system, n x inputs, each under the largest magnitude of one input.
   [[nodiscard]] Eigen::MatrixXd steady_states() const;
-  /// The basis compressed, for all systems. Its error is that of the first system and of the compression.
-  [[nodiscard]] Reduction result();
+  /// The basis compressed, for all systems. @param elsewhere  error at systems that were added and forgotten
+  /// @returns  with the larger one of this and of the last round of the first system, plus that of the compression
+  [[nodiscard]] Reduction result(const ReductionError& elsewhere);
 
  private:
   struct Parts;
