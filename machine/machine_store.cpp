@@ -132,7 +132,8 @@ std::shared_ptr<const Travel> read_travel(const Json& json, const std::filesyste
   travel->temperature = array_of<double>(folder / "travel_temperature.npy", machine.n_unknowns, size);
   travel->elastic.stiffness = read_npy<double>(folder / "travel_stiffness.npy");
   const Eigen::Index m = travel->elastic.stiffness.rows();
-  travel->elastic.displacement = array_of<double>(folder / "travel_displacement.npy", m == 0 ? 0 : 3 * machine.mesh.n_nodes(), m);
+  travel->elastic.displacement =
+      array_of<double>(folder / "travel_displacement.npy", m == 0 ? 0 : 3 * machine.mesh.n_nodes(), m);
   travel->force = array_of<double>(folder / "travel_force.npy", m, m == 0 ? 0 : size);
   travel->rest_outputs = array_of<double>(folder / "travel_rest_outputs.npy", size, n_outputs);
   return travel;

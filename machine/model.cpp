@@ -29,8 +29,8 @@ int n_fields(const Scenario& scenario) {
 std::string Model::words() const {
   if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());
   const solver::ReductionError& e = reduced()->error;
-  const std::string over = reduced()->travel ? fmt::format(" over the travel, made from {} poses,", reduced()->travel->n_training)
-                                             : "";
+  const std::string over =
+      reduced()->travel ? fmt::format(" over the travel, made from {} poses,", reduced()->travel->n_training) : "";
   return fmt::format(
       "reduced model of {} states for {} unknowns{} estimated to miss the full one by at most {:.2g} K, {:.2g} µm and "
       "{:.2g} µrad",
@@ -115,8 +115,7 @@ Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cy
   scenarios::ReducedMachine reduced = open_reduced(model, plan, listener, &was_known);
   Model opened{std::move(reduced), std::move(balance), was_known};
   if (is_moved)
-    opened.reduced_poses =
-        at_poses(model, *opened.reduced(), further_poses(model.axes, cyclograms), with_fields, listener);
+    opened.reduced_poses = at_poses(model, *opened.reduced(), further_poses(model.axes, cyclograms), with_fields, listener);
   return opened;
 }
 

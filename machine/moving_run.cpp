@@ -200,18 +200,18 @@ solver::Trajectory simulate_moving(const MachineModel& machine, const solver::Tr
       return part.empty() ? stretches[i].end_s : part.back().end_s;
     };
     std::map<const solver::ReducedSystem*, solver::Propagator> propagators;  // with their decompositions
-    return follow(stretches, from, times_s, at_output, end_of,
-                  [&](std::size_t i, double, const std::vector<double>& own_s, const Eigen::VectorXd& state,
-                      const solver::OutputCallback& take) {
-                    const solver::ReducedSystem& system = *systems[i];
-                    if (!system.is_linear())
-                      return solver::simulate(system, part, felt.ambient, own_s, options, state, take);
-                    Eigen::MatrixXd states;
-                    solver::Trajectory run = propagators.try_emplace(&system, system)
-                                                 .first->second.run(part, felt.ambient, own_s, state, true, &states);
-                    for (std::size_t k = 0; k < own_s.size(); ++k) take(own_s[k], states.col(static_cast<Eigen::Index>(k)));
-                    return run;
-                  });
+    return follow(
+        stretches, from, times_s, at_output, end_of,
+        [&](std::size_t i, double, const std::vector<double>& own_s, const Eigen::VectorXd& state,
+            const solver::OutputCallback& take) {
+          const solver::ReducedSystem& system = *systems[i];
+          if (!system.is_linear()) return solver::simulate(system, part, felt.ambient, own_s, options, state, take);
+          Eigen::MatrixXd states;
+          solver::Trajectory run =
+              propagators.try_emplace(&system, system).first->second.run(part, felt.ambient, own_s, state, true, &states);
+          for (std::size_t k = 0; k < own_s.size(); ++k) take(own_s[k], states.col(static_cast<Eigen::Index>(k)));
+          return run;
+        });
   }
   for (const PoseStretch& stretch : stretches) (void)posed_at(machine, model, stretch.pose);
   Cyclogram driven;
@@ -226,7 +226,8 @@ solver::Trajectory simulate_moving(const MachineModel& machine, const solver::Tr
         const PosedMachine* posed = posed_at(machine, model, stretches[i].pose);
         solver::TransientOptions here = options;
         here.from_s = begin_s;
-        return solver::simulate(posed ? posed->system : model.full()->system, driven, felt.ambient, own_s, here, state, take);
+        return solver::simulate(posed ? posed->system : model.full()->system, driven, felt.ambient, own_s, here, state,
+                                take);
       });
 }
 

@@ -147,6 +147,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
 }
 
 Eigen::VectorXd ReducedMachine::node_temperature_K(const Eigen::VectorXd& state) const {
+  if (travel) return travel->temperature.topRows(mesh.n_nodes()) * state;
   return (temperature * state.cast<float>()).cast<double>();
 }
 
@@ -166,9 +167,8 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
   for (const solver::FixedUnknowns& f : machine.system.fixed) {  // prescribed temperatures jump at once, as in simulate()
     for (int i : f.unknowns) start[i] = f.follows_ambient ? ambient_K : f.theta.at(0.0);
   }
-  const solver::ReductionOptions options{.temperature_K = plan.tolerance_K,
-                                         .displacement_m = 2e-6 * plan.tolerance_K,
-                                         .angle_rad = 2e-5 * plan.tolerance_K};
+  const solver::ReductionOptions options{
+      .temperature_K = plan.tolerance_K, .displacement_m = 2e-6 * plan.tolerance_K, .angle_rad = 2e-5 * plan.tolerance_K};
   const solver::ReductionDemand demand = with_prescriptions(plan.demand, system.exchanges.size());
   std::shared_ptr<Travel> travel;
   solver::Reduction reduction;

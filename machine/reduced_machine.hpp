@@ -37,6 +37,8 @@ struct ReducedMachine {
   /// What it is at other poses (travel.hpp); null: it holds at the model's pose alone.
   std::shared_ptr<const Travel> travel = nullptr;
 
+  /// True with fields, and over a travel.
+  [[nodiscard]] bool gives_node_temperatures() const { return travel || temperature.size() > 0; }
   /// Temperatures of the nodes above the reference [K], and their displacements, 3 x n_nodes [m], for a reduced state.
   [[nodiscard]] Eigen::VectorXd node_temperature_K(const Eigen::VectorXd& state) const;
   [[nodiscard]] Eigen::Matrix3Xd node_displacement_m(const Eigen::VectorXd& state) const;

@@ -27,8 +27,9 @@ void refuse_what_moves(const MachineModel& model, const std::vector<bool>& moves
                        const mesh::Mesh& mesh) {
   const Where& where = model.axes.front().where;
   if (!effects::heat_balance(model.effects).stratifications.empty())
-    throw InputError(where, "the air has a gradient, and bodies move in it; a reduced model does not follow that. Take "
-                            "`solver: {model: full}`");
+    throw InputError(where,
+                     "the air has a gradient, and bodies move in it; a reduced model does not follow that. Take "
+                     "`solver: {model: full}`");
   for (std::size_t i = 0; i < model.axes.size(); ++i) {
     const MovingAxis& axis = model.axes[i];
     if (!moves[i] || !axis.way.turns) continue;
@@ -104,9 +105,8 @@ std::shared_ptr<const solver::FullSystem> with_joints_of(const solver::FullSyste
   auto moved = std::make_shared<solver::FullSystem>(system);
   for (auto& exchange : moved->exchanges) {
     if (exchange.place.body.kind != effects::BodyKind::kJoint) continue;
-    const auto there = std::find_if(posed.exchanges.begin(), posed.exchanges.end(), [&](const auto& e) {
-      return e.name == exchange.name && e.place == exchange.place;
-    });
+    const auto there = std::find_if(posed.exchanges.begin(), posed.exchanges.end(),
+                                    [&](const auto& e) { return e.name == exchange.name && e.place == exchange.place; });
     exchange.matrix = std::move(there->matrix);
     exchange.flow = std::move(there->flow);
   }
@@ -169,8 +169,8 @@ TravelReduction reduce_over_travel(const MachineModel& model, const Machine& mac
   for (int index = 0; n_checked < kChecked; ++index) {
     const MachineModel there = at_pose(model, travel_pose(model.axes, moves, index));
     if (pose_of(there.axes) == own) continue;
-    listener.begin(fmt::format("reducing over the travel: {} pose{} in the bases, {}", n_training, n_training == 1 ? "" : "s",
-                               pose_words(there.axes, pose_of(there.axes))));
+    listener.begin(fmt::format("reducing over the travel: {} pose{} in the bases, {}", n_training,
+                               n_training == 1 ? "" : "s", pose_words(there.axes, pose_of(there.axes))));
     mesh::Mesh moved = mesh;
     move_on(there, own, sliding, moved);
     const std::vector<mesh::Motion> motions = motions_from(there, own, moved);
@@ -190,13 +190,14 @@ TravelReduction reduce_over_travel(const MachineModel& model, const Machine& mac
       continue;
     }
     if (++n_training > kMostTraining)
-      throw InputError(model.axes.front().where,
-                       fmt::format("after {} training poses the reduced model still misses by {:.2g} K, {:.2g} µm and {:.2g} "
-                                   "µrad at {}; {:.2g} K, {:.2g} µm and {:.2g} µrad are allowed. Raise "
-                                   "`reduction_tolerance` in `solver`, narrow the `range` of the axes, or take `model: full`",
-                                   kMostTraining, error.temperature_K, 1e6 * error.displacement_m, 1e6 * error.angle_rad,
-                                   pose_words(there.axes, pose_of(there.axes)), 0.5 * options.temperature_K,
-                                   0.5e6 * options.displacement_m, 0.5e6 * options.angle_rad));
+      throw InputError(
+          model.axes.front().where,
+          fmt::format("after {} training poses the reduced model still misses by {:.2g} K, {:.2g} µm and {:.2g} "
+                      "µrad at {}; {:.2g} K, {:.2g} µm and {:.2g} µrad are allowed. Raise "
+                      "`reduction_tolerance` in `solver`, narrow the `range` of the axes, or take `model: full`",
+                      kMostTraining, error.temperature_K, 1e6 * error.displacement_m, 1e6 * error.angle_rad,
+                      pose_words(there.axes, pose_of(there.axes)), 0.5 * options.temperature_K,
+                      0.5e6 * options.displacement_m, 0.5e6 * options.angle_rad));
     n_checked = 0;
     worst = {};
     if (is_elastic) elastic.add(turned_back(mesh, motions, elastic_columns(posed, reduction.steady_states())));
@@ -218,8 +219,7 @@ std::vector<PosedReduced> at_poses(const MachineModel& model, const ReducedMachi
   const Pose own = pose_of(model.axes);
   const std::vector<SlidingJoint> sliding = sliding_joints(model.axes, reduced.mesh);
   std::vector<PosedReduced> machines;
-  if (!poses.empty())
-    listener.begin(fmt::format("coupling {} further pose{}", poses.size(), poses.size() == 1 ? "" : "s"));
+  if (!poses.empty()) listener.begin(fmt::format("coupling {} further pose{}", poses.size(), poses.size() == 1 ? "" : "s"));
   for (const Pose& pose : poses) {
     const MachineModel there = at_pose(model, pose);
     mesh::Mesh moved = reduced.mesh;
@@ -229,9 +229,8 @@ std::vector<PosedReduced> at_poses(const MachineModel& model, const ReducedMachi
     PosedReduced posed{pose, reduced.system, {}};
     posed.system.parts.clear();  // their outputs are of the model's own pose
     for (const mesh::Joint& joint : placed.mesh.joints) {
-      const bool slides = std::any_of(sliding.begin(), sliding.end(), [&](const SlidingJoint& s) {
-        return placed.mesh.joints[s.joint].name == joint.name;
-      });
+      const bool slides = std::any_of(sliding.begin(), sliding.end(),
+                                      [&](const SlidingJoint& s) { return placed.mesh.joints[s.joint].name == joint.name; });
       if (!slides) continue;
       solver::RowMatrix jumps;
       Eigen::VectorXd area_m2;
@@ -265,8 +264,7 @@ Eigen::Matrix3Xd displacement_at(const MachineModel& model, const ReducedMachine
                                  const Eigen::VectorXd& state) {
   const MachineModel there = at_pose(model, posed.pose);
   const Eigen::MatrixXd drawn = reduced.travel->elastic.displacement * (posed.elastic * state);
-  const solver::RowMatrix u =
-      solver::turned(reduced.mesh, motions_from(there, pose_of(model.axes), reduced.mesh), drawn);
+  const solver::RowMatrix u = solver::turned(reduced.mesh, motions_from(there, pose_of(model.axes), reduced.mesh), drawn);
   return Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
 }
 

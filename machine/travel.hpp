@@ -15,12 +15,12 @@
 namespace driftwright::scenarios {
 
 struct Travel {
-  std::vector<bool> moves;         ///< of each axis; the others stay at the model's pose
-  solver::RowMatrix temperature;   ///< V: n_unknowns x size
-  solver::ElasticBasis elastic;    ///< m columns; none without elastic outputs
-  Eigen::MatrixXd force;           ///< W'G V, m x size
-  Eigen::MatrixXd rest_outputs;    ///< outputs without those of points, size x n_outputs
-  int n_training = 0;              ///< poses that the bases are made from
+  std::vector<bool> moves;        ///< of each axis; the others stay at the model's pose
+  solver::RowMatrix temperature;  ///< V: n_unknowns x size
+  solver::ElasticBasis elastic;   ///< m columns; none without elastic outputs
+  Eigen::MatrixXd force;          ///< W'G V, m x size
+  Eigen::MatrixXd rest_outputs;   ///< outputs without those of points, size x n_outputs
+  int n_training = 0;             ///< poses that the bases are made from
 };
 
 /// Number of poses in a row that a model must meet. With three, a basis that misses a tenth of the travel is found by a chance

@@ -29,8 +29,7 @@ std::vector<double> log_spaced(double from, double to, int n) {
 /// A growing basis, M-orthonormal, and systems of one mass matrix projected on it, each at sets of coefficients.
 class Basis {
  public:
-  explicit Basis(const FullSystem& system)
-      : system_(system), vectors_(system.size(), 0), m_vectors_(system.size(), 0) {
+  explicit Basis(const FullSystem& system) : system_(system), vectors_(system.size(), 0), m_vectors_(system.size(), 0) {
     const int every = std::max(1, system.size() / kRowsLookedAt);
     for (int i = 0; i < system.size(); ++i) {
       if (i % every == 0 || i >= system.size() - 50) rows_.push_back(i);  // the last ones are lumped nodes: each counts
@@ -50,7 +49,8 @@ class Basis {
   }
   /// Back to its first columns and points.
   void shrink(Eigen::Index columns, std::size_t points) {
-    for (Eigen::MatrixXd* of_columns : {&vectors_, &m_vectors_, &m_rows_}) of_columns->conservativeResize(Eigen::NoChange, columns);
+    for (Eigen::MatrixXd* of_columns : {&vectors_, &m_vectors_, &m_rows_})
+      of_columns->conservativeResize(Eigen::NoChange, columns);
     at_.resize(points);
     for (AtPoint& at : at_) {
       at.reduced.conservativeResize(columns, columns);
@@ -129,7 +129,7 @@ struct InputLoads {
 };
 
 InputLoads inputs_at(const FullSystem& system, const ReductionDemand& demand, const Eigen::VectorXd& start,
-                 const Eigen::VectorXd& c) {
+                     const Eigen::VectorXd& c) {
   std::vector<Eigen::VectorXd> loads;
   for (std::size_t s = 0; s < system.sources.size(); ++s) {
     const double power_W = demand.power_W[static_cast<Eigen::Index>(s)];
@@ -232,8 +232,8 @@ class Reducer {
     std::vector<Eigen::MatrixXd> tested;
     for (std::size_t p = first_; p < inputs_.size(); ++p)
       tested.push_back(outputs.transpose() * step_states(basis_.reduced_stiffness(p).topLeftCorner(size, size),
-                                             basis_.vectors().leftCols(size).transpose() * inputs_[p].loads,
-                                             inputs_[p].start, times_s_));
+                                                         basis_.vectors().leftCols(size).transpose() * inputs_[p].loads,
+                                                         inputs_[p].start, times_s_));
     return difference(system_.outputs, tested, latest_, std::span(inputs_).subspan(first_));
   }
   void forget() {
@@ -295,8 +295,7 @@ class Reducer {
       if (n_rounds == 1) add_switches();
       std::vector<Eigen::MatrixXd> now = step_test();
       if (!last.empty()) {
-        const ReductionError changed =
-            difference(system_.outputs, last, now, std::span(inputs_).subspan(first_));
+        const ReductionError changed = difference(system_.outputs, last, now, std::span(inputs_).subspan(first_));
         if (is_alone()) result_.error = changed;
         if (is_within(changed, options_, 0.5)) return now;
         if (n_rounds >= options_.most_rounds) {
@@ -352,8 +351,8 @@ class Reducer {
     std::vector<Eigen::MatrixXd> found;
     for (std::size_t p = first_; p < inputs_.size(); ++p) {
       found.push_back(basis_.outputs(p) * step_states(basis_.reduced_stiffness(p),
-                                                     basis_.vectors().transpose() * inputs_[p].loads, inputs_[p].start,
-                                                     times_s_));
+                                                      basis_.vectors().transpose() * inputs_[p].loads, inputs_[p].start,
+                                                      times_s_));
     }
     return found;
   }
@@ -433,7 +432,7 @@ class Reducer {
     ReductionError lost;
     Eigen::Index step = 8;
     while (!is_alone() && 4 * step < n) step *= 2;  // one trial takes as many decompositions as there are points
-    for (; step >= 1; step /= 2) {  // errors decrease almost monotonically with the size
+    for (; step >= 1; step /= 2) {                  // errors decrease almost monotonically with the size
       while (size - step > held.cols()) {
         const ReductionError trial = truncation(size - step);
         if (!is_within(trial, options_, 0.5)) break;
