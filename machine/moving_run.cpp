@@ -103,6 +103,16 @@ void require_no_thermostat(const MachineModel& model, const effects::HeatBalance
                                balance.thermostats.front().name));
 }
 
+void require_room_for(const MachineModel& model, std::size_t n_poses, double each_bytes) {
+  const double more_bytes = static_cast<double>(n_poses - 1) * each_bytes, left_bytes = room_bytes();
+  if (more_bytes > left_bytes)
+    throw InputError(
+        model.axes.front().where,
+        fmt::format("the cyclograms have {} poses; they would take about {:.1f} GB of memory, and {:.1f} GB are "
+                    "left. Give the axis a `step`, to which positions are rounded, or take a coarser mesh",
+                    n_poses, 1e-9 * more_bytes, 1e-9 * left_bytes));
+}
+
 std::vector<PosedMachine> posed_machines(const MachineModel& model, const std::vector<const Cyclogram*>& cyclograms,
                                          const mesh::Mesh& drawn, const Listener& listener, bool with_fields) {
   std::vector<PosedMachine> machines;
@@ -119,14 +129,7 @@ std::vector<PosedMachine> posed_machines(const MachineModel& model, const std::v
     PosedMachine posed{pose, std::move(machine.system), std::nullopt};
     if (with_fields && machine.elasticity) posed.elasticity.emplace(std::move(*machine.elasticity));
     machines.push_back(std::move(posed));
-    if (machines.size() > 1) continue;
-    const double more_bytes = static_cast<double>(poses.size() - 1) * bytes_of(machines.front());
-    if (const double left_bytes = room_bytes(); more_bytes > left_bytes)
-      throw InputError(
-          model.axes.front().where,
-          fmt::format("the cyclograms have {} poses; they would take about {:.1f} GB of memory, and {:.1f} GB are "
-                      "left. Give the axis a `step`, to which positions are rounded, or take a coarser mesh",
-                      poses.size(), 1e-9 * more_bytes, 1e-9 * left_bytes));
+    if (machines.size() == 1) require_room_for(model, poses.size(), bytes_of(machines.front()));
   }
   return machines;
 }

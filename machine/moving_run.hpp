@@ -15,6 +15,9 @@ namespace driftwright::scenarios {
 /// @throws InputError  if a thermostat would lose its state between poses
 void require_no_thermostat(const MachineModel& model, const effects::HeatBalance& balance);
 
+/// After the first of some poses was made. @throws InputError  if the others take more than the memory that is left
+void require_room_for(const MachineModel& model, std::size_t n_poses, double each_bytes);
+
 /// The full machine at every pose of the cyclograms, save at the model's own. Nodes are the same at all poses; couplings, elastic
 /// responses and (with fields) the elastic machine are made for each.
 /// @param drawn  mesh of build_mesh()

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "base/dense.hpp"
+#include "machine/moving_run.hpp"
 #include "machine/poses.hpp"
 #include "solver/joint.hpp"
 #include "solver/pose_reduction.hpp"
@@ -202,8 +203,10 @@ TravelReduction reduce_over_travel(const MachineModel& model, const Machine& mac
     worst = {};
     if (is_elastic) elastic.add(turned_back(mesh, motions, elastic_columns(posed, reduction.steady_states())));
   }
-  TravelReduction made{.reduction = reduction.result(worst), .travel = {.moves = moves, .n_training = n_training}};
+  TravelReduction made{reduction.result(worst), {}};
   Travel& travel = made.travel;
+  travel.moves = moves;
+  travel.n_training = n_training;
   travel.temperature = made.reduction.basis;
   travel.rest_outputs = made.reduction.basis.transpose() * rest;
   if (is_elastic) {
@@ -256,6 +259,9 @@ std::vector<PosedReduced> at_poses(const MachineModel& model, const ReducedMachi
           travel.force.transpose() * responses;
     }
     machines.push_back(std::move(posed));
+    const auto size = static_cast<double>(reduced.system.size()), m = static_cast<double>(machines.back().elastic.rows());
+    const double bytes = sizeof(double) * size * (size * static_cast<double>(reduced.system.exchanges.size() + 2) + m);
+    if (machines.size() == 1) require_room_for(model, poses.size(), bytes);
   }
   return machines;
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "base/file_bytes.hpp"
 #include "machine/simulated_run.hpp"
@@ -66,7 +67,8 @@ std::vector<Cyclogram> at_eleven_poses(const Scenario& scenario) {
                 .sections = {{3600.0, {.speed_rpm = 6000.0}}, {3600.0, {.speed_rpm = 3000.0}}}};
     for (std::size_t a = 0; a < scenario.machine->axes.size(); ++a) {
       const MovingAxis& axis = scenario.machine->axes[a];
-      const double low_SI = axis.is_endless ? -M_PI : axis.low_SI, high_SI = axis.is_endless ? M_PI : axis.high_SI;
+      const double low_SI = axis.is_endless ? -std::numbers::pi : axis.low_SI,
+                   high_SI = axis.is_endless ? std::numbers::pi : axis.high_SI;
       const double share = std::fmod(0.5 + (i + 1) * kSpread[a], 1.0);
       c.columns.push_back({axis.column, axis.unit(), {{0.0}, {(low_SI + share * (high_SI - low_SI)) / axis.unit_SI()}}});
     }
@@ -103,6 +105,16 @@ void expect_held_over_the_travel(Scenario scenario) {
   const Eigen::MatrixXd own = outputs(reduced.reduced()->system);
   EXPECT_GT((outputs(reduced.reduced_poses[0].system) - own).norm(), 1e-3 * own.norm());
 
+  // Temperatures of all nodes, which `volume` bends the machine by.
+  const auto at_end = [&](const Model& model) {
+    Eigen::VectorXd state;
+    (void)simulate_run(*scenario.machine, scenario.solver.transient, model, start_of(*scenario.machine, model), shift,
+                       {shift.duration_s()}, [&](double, const Eigen::VectorXd& at) { state = at; });
+    return model.reduced() ? model.reduced()->node_temperature_K(state)
+                           : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
+  };
+  EXPECT_LT((at_end(full) - at_end(reduced)).cwiseAbs().maxCoeff(), 2.0 * kMost_K);  // nodes beside sources: no outputs
+
   const Model again = opened(scenario, ModelKind::kReduced, all);
   EXPECT_TRUE(again.was_known);
   EXPECT_EQ(again.words(), reduced.words());
@@ -120,11 +132,11 @@ TEST(Travel, WithARotaryAxisHoldsAtElevenPosesOutsideTheTraining) {
 TEST(Travel, IsTriedFromEndToEndAndBetween) {
   const std::vector<MovingAxis> axes = rotary().machine->axes;  // x, y, c, z
   const std::vector<bool> moves = {true, false, true, false};
-  EXPECT_EQ(travel_pose(axes, moves, 0), (Pose{axes[0].low_SI, axes[1].at_SI, -M_PI, axes[3].at_SI}));
+  EXPECT_EQ(travel_pose(axes, moves, 0), (Pose{axes[0].low_SI, axes[1].at_SI, -std::numbers::pi, axes[3].at_SI}));
   EXPECT_EQ(travel_pose(axes, moves, 1), (Pose{axes[0].high_SI, axes[1].at_SI, 0.0, axes[3].at_SI}));
   const Pose between = travel_pose(axes, moves, 3);  // 1/4 and 2/3
   EXPECT_NEAR(between[0], axes[0].low_SI + 0.25 * (axes[0].high_SI - axes[0].low_SI), 1e-12);
-  EXPECT_NEAR(between[2], -M_PI + 2.0 / 3.0 * 2.0 * M_PI, 1e-12);
+  EXPECT_NEAR(between[2], -std::numbers::pi + 2.0 / 3.0 * 2.0 * std::numbers::pi, 1e-12);
 }
 
 TEST(Travel, IsRefusedWhereMoreThanJointsChanges) {
