@@ -123,7 +123,9 @@ void expect_held_over_the_travel(Scenario scenario) {
 }
 
 TEST(Travel, OfLinearAxesHoldsAtElevenPosesOutsideTheTraining) {
-  expect_held_over_the_travel(coarse_mill());
+  Scenario scenario = coarse_mill();
+  scenario.solver.reduction_tolerance_K = 0.02;  // the goal is 0.05 K; fewer poses to train by
+  expect_held_over_the_travel(std::move(scenario));
 }
 TEST(Travel, WithARotaryAxisHoldsAtElevenPosesOutsideTheTraining) {
   expect_held_over_the_travel(rotary());
