@@ -23,9 +23,9 @@ struct Travel {
   int n_training = 0;             ///< poses that the bases are made from
 };
 
-/// Number of poses in a row that a model must meet. With three, a basis that misses a tenth of the travel is found by a chance
-/// of one in four, and one that misses a third by two in three; each takes an elastic factorisation.
-inline constexpr int kChecked = 3;
+/// Number of poses in a row that a model must meet. With five, a basis that misses in a tenth of the travel is found by a
+/// chance of two in five, and one that misses in a third by six in seven; each takes an elastic factorisation.
+inline constexpr int kChecked = 5;
 /// Most poses of a training. The bases' memory and the time of a decomposition grow with their number.
 inline constexpr int kMostTraining = 40;
 
