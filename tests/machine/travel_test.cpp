@@ -96,7 +96,7 @@ void expect_held_over_the_travel(Scenario scenario) {
   }
   EXPECT_LT(most_K, kMost_K);
   EXPECT_LT(most_um, kMost_um);
-  // The estimate is no bound: where the table overhangs, one pose of eleven missed by five times as much.
+  // The estimate is no bound: where the table overhangs, a pose may miss by some times as much.
   constexpr double kFar = 10.0;
   EXPECT_LT(most_K, kFar * reduced.reduced()->error.temperature_K) << reduced.words();
   EXPECT_LT(most_um, kFar * 1e6 * reduced.reduced()->error.displacement_m) << reduced.words();
