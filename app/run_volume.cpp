@@ -38,15 +38,17 @@ void write_volume(output::ResultsFolder& folder, const studies::WorkVolume& volu
 
 void run_volume(const CommonOptions& options, const scenarios::Scenario& scenario) {
   const scenarios::VolumeSettings& settings = *scenario.volume;
-  if (scenario.solver.model != scenarios::ModelKind::kFull)
-    throw InputError(settings.where,
-                     "`volume` requires the temperatures of all nodes at any pose; write `solver: {model: full}`");
   output::ResultsFolder folder = open_results(options, scenario.name);
   Progress progress(options.quiet);
   progress.begin("meshing");
   const mesh::Mesh drawn = scenarios::build_mesh(scenario.machine->mesh);
   const scenarios::Model machine =
-      scenarios::open_model(scenario, {&scenario.cyclogram(settings.cyclogram)}, progress.listener(), false, &drawn);
+      scenarios::open_model(scenario, {&scenario.cyclogram(settings.cyclogram)}, progress.listener(), false, &drawn, nullptr,
+                            scenarios::Follows::kMoves);
+  if (const scenarios::ReducedMachine* reduced = machine.reduced(); reduced && !reduced->gives_node_temperatures())
+    throw InputError(settings.where,
+                     "`volume` requires the temperatures of all nodes; write `solver: {model: full}`, or take "
+                     "`fields_format: none` out");
   const studies::WorkVolume volume = studies::study_volume(scenario, drawn, machine, progress.listener());
   progress.begin("writing results");
   write_volume(folder, volume, settings, scenario.machine->axes);

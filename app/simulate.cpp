@@ -51,8 +51,8 @@ void simulate_on(const solver::Ranks* ranks, const SimulateOptions& options) {
   // Whole fields of one cyclogram only: those of several would fill the disk, and one list of times would mix them.
   const bool wants_fields = scenario.solver.fields_format != FieldsFormat::kNone;
   const bool writes_fields = wants_fields && cyclograms.size() == 1;
-  const scenarios::Model machine =
-      scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields, nullptr, ranks);
+  const scenarios::Model machine = scenarios::open_model(scenario, cyclograms, progress.listener(), writes_fields, nullptr,
+                                                         ranks, scenarios::Follows::kMoves);
   if (!writes) {  // it computes its part of what the first process writes
     scenarios::FieldSink computed{.cyclogram = 0, .take = [](const scenarios::WholeFields&) {}};
     (void)scenarios::simulate_cyclograms(scenario, machine, cyclograms, progress.listener(),
@@ -85,7 +85,7 @@ void simulate_on(const solver::Ranks* ranks, const SimulateOptions& options) {
       folder.write_text(is_only ? "record_band.csv" : "bands/" + file_name(name, ".csv"),
                         band_csv(*bands.back(), folder.made_by()));
   }
-  if (const scenarios::ReducedMachine* reduced = machine.reduced(); reduced && machine.is_linear()) {
+  if (const scenarios::ReducedMachine* reduced = machine.reduced(); reduced && !reduced->travel && machine.is_linear()) {
     std::vector<Drive> drives = {Drive{}};
     for (const Cyclogram* c : cyclograms) {
       for (const auto& section : c->sections) {

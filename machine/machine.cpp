@@ -178,10 +178,14 @@ PlacedMachine place(const MachineModel& model) {
 }
 
 PlacedMachine place(const MachineModel& model, mesh::Mesh meshed) {
+  add_channel_sections(model, meshed);
+  move_bodies(model, meshed);
+  return place_again(model, std::move(meshed));
+}
+
+PlacedMachine place_again(const MachineModel& model, mesh::Mesh meshed) {
   PlacedMachine placed;
   placed.mesh = std::move(meshed);
-  add_channel_sections(model, placed.mesh);
-  move_bodies(model, placed.mesh);
   const Mesh& mesh = placed.mesh;
   placed.materials = region_materials(model, mesh);
   placed.balance = effects::heat_balance(model.effects);

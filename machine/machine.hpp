@@ -39,6 +39,9 @@ struct PlacedMachine {
 /// The same with a mesh that build_mesh() has made from model.mesh.
 [[nodiscard]] PlacedMachine place(const MachineModel& model, mesh::Mesh mesh);
 
+/// The same with the mesh of a machine placed at the model's pose.
+[[nodiscard]] PlacedMachine place_again(const MachineModel& model, mesh::Mesh mesh);
+
 /// Materials by region of the mesh, with the factors of effects. @throws InputError for a region without material, or the
 /// reverse
 [[nodiscard]] solver::RegionMaterials region_materials(const MachineModel& model, const mesh::Mesh& mesh);

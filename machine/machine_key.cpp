@@ -136,6 +136,10 @@ std::string machine_key(const MachineModel& model, const ReductionPlan& plan, co
   key += fmt::format("power {}\nlow {}\nhigh {}\nambient {} K, {} s, tolerance {} K, {} modes, fields {}, parts {}\n",
                      numbers(d.power_W), numbers(d.low), numbers(d.high), d.ambient_K, d.duration_s, plan.tolerance_K,
                      plan.n_modes, plan.with_fields, plan.with_parts);
+  for (std::size_t i = 0; i < plan.moves.size(); ++i) {
+    const MovingAxis& axis = model.axes[i];
+    if (plan.moves[i]) key += fmt::format("over the travel of {} from {} to {}\n", axis.name, axis.low_SI, axis.high_SI);
+  }
   return key;
 }
 

@@ -11,6 +11,7 @@
 #include "base/file_bytes.hpp"
 #include "base/npy_file.hpp"
 #include "machine/reduced_files.hpp"
+#include "machine/travel.hpp"
 
 namespace driftwright::scenarios {
 namespace {
@@ -103,6 +104,14 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
     write("bare", machine.modal->bare);
     write("completed", machine.modal->completed);
   }
+  if (const Travel* travel = machine.travel.get()) {
+    json["travel"] = {{"moves", travel->moves}, {"n_training", travel->n_training}};
+    write_npy(work / "travel_temperature.npy", Eigen::MatrixXd(travel->temperature));
+    write_npy(work / "travel_displacement.npy", Eigen::MatrixXd(travel->elastic.displacement));
+    write_npy(work / "travel_stiffness.npy", travel->elastic.stiffness);
+    write_npy(work / "travel_force.npy", travel->force);
+    write_npy(work / "travel_rest_outputs.npy", travel->rest_outputs);
+  }
   write_npy(work / "temperature.npy", machine.temperature);
   write_npy(work / "displacement_m.npy", machine.displacement_m);
   write_bytes(work / "model.json", json.dump());
@@ -111,6 +120,23 @@ void write_machine(const std::filesystem::path& work, const std::string& key, co
   for (const auto& entry : std::filesystem::directory_iterator(work))
     hashes[entry.path().filename().string()] = content_hash(read_bytes(entry.path()));
   write_bytes(work / kHashes, hashes.dump());
+}
+
+/// @param machine  with its mesh and system
+std::shared_ptr<const Travel> read_travel(const Json& json, const std::filesystem::path& folder,
+                                          const ReducedMachine& machine) {
+  auto travel = std::make_shared<Travel>();
+  travel->moves = json.at("moves").get<std::vector<bool>>();
+  travel->n_training = json.at("n_training");
+  const Eigen::Index size = machine.system.size(), n_outputs = machine.system.outputs.state.cols();
+  travel->temperature = array_of<double>(folder / "travel_temperature.npy", machine.n_unknowns, size);
+  travel->elastic.stiffness = read_npy<double>(folder / "travel_stiffness.npy");
+  const Eigen::Index m = travel->elastic.stiffness.rows();
+  travel->elastic.displacement =
+      array_of<double>(folder / "travel_displacement.npy", m == 0 ? 0 : 3 * machine.mesh.n_nodes(), m);
+  travel->force = array_of<double>(folder / "travel_force.npy", m, m == 0 ? 0 : size);
+  travel->rest_outputs = array_of<double>(folder / "travel_rest_outputs.npy", size, n_outputs);
+  return travel;
 }
 
 /// @throws InputError  naming the first file that has changed; a JSON exception if the list of hashes is not valid
@@ -168,6 +194,7 @@ std::optional<ReducedMachine> load_machine(const std::filesystem::path& store, c
       };
       machine.modal = {read("bare"), read("completed")};
     }
+    if (json.contains("travel")) machine.travel = read_travel(json.at("travel"), folder, machine);
     const bool has_fields = json.at("has_fields");
     const Eigen::Index size = has_fields ? machine.system.size() : 0, n_nodes = has_fields ? machine.mesh.n_nodes() : 0;
     machine.temperature = array_of<float>(folder / "temperature.npy", n_nodes, size);

@@ -9,6 +9,7 @@
 #include "machine/machine_store.hpp"
 #include "machine/moving_run.hpp"
 #include "machine/sources.hpp"
+#include "machine/travel.hpp"
 #include "machine/ways_out.hpp"
 #include "scenarios/reader/felt_run.hpp"
 
@@ -28,10 +29,13 @@ int n_fields(const Scenario& scenario) {
 std::string Model::words() const {
   if (full()) return fmt::format("full model of {} temperature unknowns", n_unknowns());
   const solver::ReductionError& e = reduced()->error;
+  const std::string over =
+      reduced()->travel ? fmt::format(" over the travel, made from {} poses,", reduced()->travel->n_training) : "";
   return fmt::format(
-      "reduced model of {} states for {} unknowns, estimated to miss the full one by at most {:.2g} K, {:.2g} µm and "
+      "reduced model of {} states for {} unknowns{} estimated to miss the full one by at most {:.2g} K, {:.2g} µm and "
       "{:.2g} µrad",
-      reduced()->system.size(), n_unknowns(), e.temperature_K, 1e6 * e.displacement_m, 1e6 * e.angle_rad);
+      reduced()->system.size(), n_unknowns(), over.empty() ? "," : over, e.temperature_K, 1e6 * e.displacement_m,
+      1e6 * e.angle_rad);
 }
 
 compensation::ModalPredictors modal_predictors(const scenarios::Scenario& scenario, const Model& model, int n_modes,
@@ -68,7 +72,7 @@ scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, con
   const scenarios::Machine machine = build_machine(model, listener, plan.with_fields ? kStates : 0);
   scenarios::require_ways_out(machine.placed.mesh, machine.placed.balance, model.where);
   listener.begin(fmt::format("reducing {} temperature unknowns", machine.system.size()));
-  scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan);
+  scenarios::ReducedMachine reduced = scenarios::reduce(model, machine, plan, listener);
   try {
     scenarios::save_machine(store, key, reduced);
   } catch (const InputError& e) {  // the run itself is not affected
@@ -78,7 +82,8 @@ scenarios::ReducedMachine open_reduced(const scenarios::MachineModel& model, con
 }
 
 Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
-                 const Listener& listener, bool with_fields, const mesh::Mesh* drawn, const solver::Ranks* ranks) {
+                 const Listener& listener, bool with_fields, const mesh::Mesh* drawn, const solver::Ranks* ranks,
+                 Follows follows) {
   const scenarios::MachineModel& model = *scenario.machine;
   effects::HeatBalance balance = effects::heat_balance(model.effects);
   if (scenario.solver.model == scenarios::ModelKind::kFull) {
@@ -95,12 +100,23 @@ Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cy
     opened.poses = posed_machines(model, moving, *drawn, listener, with_fields);
     return opened;
   }
-  for (const Cyclogram* c : cyclograms) require_resting(model.axes, *c);
+  const auto moves = [&](const Cyclogram* c) { return moves_axes(model.axes, *c); };
+  const bool is_moved = follows == Follows::kMoves && std::any_of(cyclograms.begin(), cyclograms.end(), moves);
+  if (is_moved) {
+    require_no_thermostat(model, balance);
+  } else {
+    for (const Cyclogram* c : cyclograms) require_resting(model.axes, *c);
+  }
   std::vector<const Cyclogram*> asked = cyclograms;
   for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
+  ReductionPlan plan = reduction_plan(scenario, asked);
+  if (is_moved) plan.moves = moved_axes(model.axes, asked);
   bool was_known = false;
-  scenarios::ReducedMachine reduced = open_reduced(model, scenarios::reduction_plan(scenario, asked), listener, &was_known);
-  return {std::move(reduced), std::move(balance), was_known};
+  scenarios::ReducedMachine reduced = open_reduced(model, plan, listener, &was_known);
+  Model opened{std::move(reduced), std::move(balance), was_known};
+  if (is_moved)
+    opened.reduced_poses = at_poses(model, *opened.reduced(), further_poses(model.axes, cyclograms), with_fields, listener);
+  return opened;
 }
 
 }  // namespace driftwright::scenarios

@@ -16,12 +16,20 @@ struct PosedMachine {
   std::optional<solver::Elasticity> elasticity;  ///< with fields
 };
 
+/// The reduced machine at another pose.
+struct PosedReduced {
+  Pose pose;
+  solver::ReducedSystem system;
+  Eigen::MatrixXd elastic;  ///< coordinates of the displacements in Travel::displacement for a reduced state, m x size
+};
+
 /// A full or reduced machine with its heat balance.
 struct Model {
   std::variant<scenarios::Machine, scenarios::ReducedMachine> machine;
   effects::HeatBalance balance;
   bool was_known = false;                ///< the reduced model came from disk
   std::vector<PosedMachine> poses = {};  ///< of a full machine: the other poses of its cyclograms
+  std::vector<PosedReduced> reduced_poses = {};  ///< of a reduced one
 
   [[nodiscard]] const scenarios::Machine* full() const { return std::get_if<scenarios::Machine>(&machine); }
   [[nodiscard]] const scenarios::ReducedMachine* reduced() const { return std::get_if<scenarios::ReducedMachine>(&machine); }
@@ -63,15 +71,19 @@ inline constexpr int kStates = 50;
                                                      const scenarios::ReductionPlan& plan, const Listener& listener,
                                                      bool* was_known = nullptr);
 
+/// Whether a caller of a reduced model runs it by simulate_run(), which moves axes, or holds the machine at one pose.
+enum class Follows { kOnePose, kMoves };
+
 /// The model that the scenario asks for. A reduced one is read from disk if the machine is stored for such cyclograms, else
 /// it is made and stored.
 /// @param cyclograms  that it will run; those of the scenario are always included in a reduced model, and in a full one if
 ///                    there are none here. A full one follows those that move axes
 /// @param drawn       mesh of build_mesh(); null: it is made
 /// @param ranks       as build(); for scenarios that require_distributable() lets pass
-/// @throws InputError  for a reduced model and a cyclogram that moves axes
+/// @param follows     what the caller does with a reduced model of a cyclogram that moves axes
+/// @throws InputError  for a reduced model that does not follow a cyclogram that moves axes
 [[nodiscard]] Model open_model(const scenarios::Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms,
                                const Listener& listener, bool with_fields, const mesh::Mesh* drawn = nullptr,
-                               const solver::Ranks* ranks = nullptr);
+                               const solver::Ranks* ranks = nullptr, Follows follows = Follows::kOnePose);
 
 }  // namespace driftwright::scenarios

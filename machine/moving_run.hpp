@@ -1,13 +1,24 @@
 #pragma once
-// Runs of the full model while its axes move: one set of matrices for each pose, and the temperatures of all bodies carried
-// from one to the next.
+// Runs while axes move: one set of matrices for each pose, and the temperatures of all bodies carried from one to the next.
 
 #include "base/machine_run.hpp"
 #include "machine/model.hpp"
 
 namespace driftwright::scenarios {
 
-/// The machine at every pose of the cyclograms, save at the model's own. Nodes are the same at all poses; couplings, elastic
+/// The poses of cyclograms in the order in which they come first, without that of the axes.
+[[nodiscard]] std::vector<Pose> further_poses(const std::vector<MovingAxis>& axes,
+                                              const std::vector<const Cyclogram*>& cyclograms);
+/// Of each axis: true if one of the cyclograms moves it.
+[[nodiscard]] std::vector<bool> moved_axes(const std::vector<MovingAxis>& axes,
+                                           const std::vector<const Cyclogram*>& cyclograms);
+/// @throws InputError  if a thermostat would lose its state between poses
+void require_no_thermostat(const MachineModel& model, const effects::HeatBalance& balance);
+
+/// After the first of some poses was made. @throws InputError  if the others take more than the memory that is left
+void require_room_for(const MachineModel& model, std::size_t n_poses, double each_bytes);
+
+/// The full machine at every pose of the cyclograms, save at the model's own. Nodes are the same at all poses; couplings, elastic
 /// responses and (with fields) the elastic machine are made for each.
 /// @param drawn  mesh of build_mesh()
 /// @throws InputError  as place(); if a thermostat would lose its state between poses; and if the poses take more than the
@@ -18,6 +29,9 @@ namespace driftwright::scenarios {
 
 /// The full machine of a pose; nullptr: that of the model itself. @throws InputError  if it was not made for this pose
 [[nodiscard]] const PosedMachine* posed_at(const MachineModel& machine, const Model& model, const Pose& pose);
+
+/// The reduced machine of a pose, likewise.
+[[nodiscard]] const PosedReduced* reduced_at(const MachineModel& machine, const Model& model, const Pose& pose);
 
 /// Simulates a cyclogram that moves axes: the run of each stretch of one pose goes on from the state of the one before. The
 /// time at which an axis moves belongs to the pose after, as the record's row does. Heat is counted from the start.

@@ -82,6 +82,25 @@ void require_even_expansion(const MachineModel& model, const MovingAxis& axis) {
   }
 }
 
+std::vector<SlidingJoint> sliding_among(const std::vector<MovingAxis>& axes, const mesh::Mesh& mesh,
+                                        std::span<const mesh::DescribedFacet> outer) {
+  std::vector<SlidingJoint> sliding;
+  for (std::size_t j = 0; j < mesh.joints.size(); ++j) {
+    const Carriers a = carriers_of_side(axes, mesh, mesh.joints[j].side_a, outer),
+                   b = carriers_of_side(axes, mesh, mesh.joints[j].side_b, outer);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      if (a[i] != b[i]) sliding.push_back({j, i});
+    }
+  }
+  return sliding;
+}
+
+void require_possible(const MachineModel& model, const mesh::Mesh& mesh, const std::vector<SlidingJoint>& sliding) {
+  for (const auto& [joint, axis] : sliding)
+    require_guided(mesh, mesh.joints[joint], model.axes[axis], way_at_pose(model.axes, axis));
+  require_apart(mesh, model.axes);
+}
+
 }  // namespace
 
 MachineModel at_pose(MachineModel model, const Pose& pose) {
@@ -104,16 +123,10 @@ void move_bodies(const MachineModel& model, mesh::Mesh& mesh) {
                                    e.name));
   }
   const std::vector<mesh::DescribedFacet> outer = mesh::described_outer_faces(mesh);
-  std::vector<std::pair<std::size_t, std::size_t>> sliding;  // joint and axis
-  for (std::size_t j = 0; j < mesh.joints.size(); ++j) {
-    const mesh::Joint joint = mesh.joints[j];
-    const Carriers a = carriers_of_side(axes, mesh, joint.side_a, outer),
-                   b = carriers_of_side(axes, mesh, joint.side_b, outer);
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      if (a[i] == b[i]) continue;
-      mesh::continue_sides(mesh, joint, outer, axes[i].way);
-      sliding.emplace_back(j, i);
-    }
+  const std::vector<SlidingJoint> sliding = sliding_among(axes, mesh, outer);
+  for (const auto& [joint, axis] : sliding) {
+    const mesh::Joint slides = mesh.joints[joint];
+    mesh::continue_sides(mesh, slides, outer, axes[axis].way);
   }
   std::vector<mesh::Motion> motions(mesh.regions.size());
   std::transform(mesh.regions.begin(), mesh.regions.end(), motions.begin(),
@@ -124,9 +137,27 @@ void move_bodies(const MachineModel& model, mesh::Mesh& mesh) {
                                  mesh.regions[static_cast<std::size_t>(torn->first)],
                                  mesh.regions[static_cast<std::size_t>(torn->second)]));
   const bool is_drawn = std::all_of(motions.begin(), motions.end(), [](const auto& m) { return m == mesh::Motion{}; });
-  if (is_drawn) return;
-  for (const auto& [joint, axis] : sliding) require_guided(mesh, mesh.joints[joint], axes[axis], way_at_pose(axes, axis));
-  require_apart(mesh, axes);
+  if (!is_drawn) require_possible(model, mesh, sliding);
+}
+
+std::vector<SlidingJoint> sliding_joints(const std::vector<MovingAxis>& axes, const mesh::Mesh& mesh) {
+  return sliding_among(axes, mesh, mesh::described_outer_faces(mesh));
+}
+
+std::vector<mesh::Motion> motions_from(const MachineModel& model, const Pose& from, const mesh::Mesh& mesh) {
+  const std::vector<MovingAxis> before = axes_at(model.axes, from);
+  std::vector<mesh::Motion> motions;
+  for (const std::string& region : mesh.regions) {
+    const mesh::Motion to = motion_of(model.axes, region), was = motion_of(before, region);
+    const Eigen::Matrix3d back = was.turn.transpose();
+    motions.push_back(to == was ? mesh::Motion{} : to.after({.turn = back, .shift_m = -(back * was.shift_m)}));
+  }
+  return motions;
+}
+
+void move_on(const MachineModel& model, const Pose& from, const std::vector<SlidingJoint>& sliding, mesh::Mesh& mesh) {
+  (void)mesh::move_regions(mesh, motions_from(model, from, mesh));  // move_bodies() has found that none are torn apart
+  require_possible(model, mesh, sliding);
 }
 
 solver::JointMechanics mechanics_at_pose(const MachineModel& model, const mesh::Mesh& mesh, const JointEntry& entry) {

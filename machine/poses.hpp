@@ -16,6 +16,19 @@ namespace driftwright::scenarios {
 ///                     them apart
 void move_bodies(const MachineModel& model, mesh::Mesh& mesh);
 
+/// A joint on which an axis slides or turns, by their numbers.
+struct SlidingJoint {
+  std::size_t joint = 0, axis = 0;
+};
+/// @throws InputError  if an axis moves only a part of a side
+[[nodiscard]] std::vector<SlidingJoint> sliding_joints(const std::vector<MovingAxis>& axes, const mesh::Mesh& mesh);
+
+/// Moves the bodies of a mesh that move_bodies() has moved to the pose `from` on to the model's pose.
+/// @throws InputError  for a pose at which bodies overlap, or a joint has lost its guide
+void move_on(const MachineModel& model, const Pose& from, const std::vector<SlidingJoint>& sliding, mesh::Mesh& mesh);
+/// How each region has moved from the pose `from` to the model's pose.
+[[nodiscard]] std::vector<mesh::Motion> motions_from(const MachineModel& model, const Pose& from, const mesh::Mesh& mesh);
+
 /// The mechanics of a joint at the model's pose: the axis of a ring turns with its bodies.
 /// @throws InputError  if an axis of `axes` that turns carries one side of a ring and changes the direction of the ring's
 /// axis

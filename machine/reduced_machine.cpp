@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "machine/body_parts.hpp"
+#include "machine/travel.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "solver/conduction_factor.hpp"
 #include "solver/reduced_model.hpp"
@@ -146,6 +147,7 @@ ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const C
 }
 
 Eigen::VectorXd ReducedMachine::node_temperature_K(const Eigen::VectorXd& state) const {
+  if (travel) return travel->temperature.topRows(mesh.n_nodes()) * state;
   return (temperature * state.cast<float>()).cast<double>();
 }
 
@@ -154,7 +156,8 @@ Eigen::Matrix3Xd ReducedMachine::node_displacement_m(const Eigen::VectorXd& stat
   return Eigen::Map<const Eigen::Matrix3Xd>(u.data(), 3, u.size() / 3);
 }
 
-ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan) {
+ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan,
+                      const Listener& listener) {
   const effects::HeatBalance balance = effects::with_radiation_as_films(machine.placed.balance);
   solver::RegionMaterials materials = machine.placed.materials;
   solver::FullSystem system = reducible_system(model, machine, balance, plan.demand, materials);
@@ -164,9 +167,19 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
   for (const solver::FixedUnknowns& f : machine.system.fixed) {  // prescribed temperatures jump at once, as in simulate()
     for (int i : f.unknowns) start[i] = f.follows_ambient ? ambient_K : f.theta.at(0.0);
   }
-  const solver::Reduction reduction = solver::reduce(
-      system, with_prescriptions(plan.demand, system.exchanges.size()), start,
-      {.temperature_K = plan.tolerance_K, .displacement_m = 2e-6 * plan.tolerance_K, .angle_rad = 2e-5 * plan.tolerance_K});
+  const solver::ReductionOptions options{
+      .temperature_K = plan.tolerance_K, .displacement_m = 2e-6 * plan.tolerance_K, .angle_rad = 2e-5 * plan.tolerance_K};
+  const solver::ReductionDemand demand = with_prescriptions(plan.demand, system.exchanges.size());
+  std::shared_ptr<Travel> travel;
+  solver::Reduction reduction;
+  if (plan.moves.empty()) {
+    reduction = solver::reduce(system, demand, start, options);
+  } else {
+    TravelReduction over = reduce_over_travel(model, machine, std::make_shared<const solver::FullSystem>(system), start,
+                                              demand, options, plan.moves, listener);
+    reduction = std::move(over.reduction);
+    travel = std::make_shared<Travel>(std::move(over.travel));
+  }
   ReducedMachine reduced{.mesh = machine.placed.mesh,
                          .n_unknowns = system.size(),
                          .system = solver::project(system, reduction.basis),
@@ -174,7 +187,8 @@ ReducedMachine reduce(const MachineModel& model, const Machine& machine, const R
                          .error = reduction.error,
                          .modal = modal_predictors(system, start, ambient_K, plan),
                          .temperature = {},
-                         .displacement_m = {}};
+                         .displacement_m = {},
+                         .travel = std::move(travel)};
   const int n_nodes = machine.placed.mesh.n_nodes();
   if (!plan.with_fields || !machine.elasticity) return reduced;
   reduced.temperature = reduction.basis.topRows(n_nodes).cast<float>();

@@ -2,6 +2,7 @@
 // The result of reducing a machine: a small system that runs any cyclogram in about a millisecond, and the fields of its
 // unknowns.
 
+#include "base/listener.hpp"
 #include "compensation/predictors/modal_predictor.hpp"
 #include "machine/machine.hpp"
 #include "solver/krylov_reduction.hpp"
@@ -16,8 +17,11 @@ struct ReductionPlan {
   int n_modes = 20;           ///< of the modal predictors; 0: no such predictors
   bool with_fields = true;    ///< displacements of all nodes may be requested
   bool with_parts = false;    ///< the material of a region may be changed later
+  std::vector<bool> moves = {};  ///< of each axis: the model must hold over its travel; empty: at the model's pose alone
 };
 [[nodiscard]] ReductionPlan reduction_plan(const Scenario& scenario, const std::vector<const Cyclogram*>& cyclograms);
+
+struct Travel;
 
 /// The reduced machine.
 struct ReducedMachine {
@@ -30,7 +34,11 @@ struct ReducedMachine {
   std::optional<compensation::ModalPredictors> modal;
   Eigen::MatrixXf temperature;     ///< of the nodes [K], n_nodes x size
   Eigen::MatrixXf displacement_m;  ///< 3 n_nodes x size; empty without fields
+  /// What it is at other poses (travel.hpp); null: it holds at the model's pose alone.
+  std::shared_ptr<const Travel> travel = nullptr;
 
+  /// True with fields, and over a travel.
+  [[nodiscard]] bool gives_node_temperatures() const { return travel || temperature.size() > 0; }
   /// Temperatures of the nodes above the reference [K], and their displacements, 3 x n_nodes [m], for a reduced state.
   [[nodiscard]] Eigen::VectorXd node_temperature_K(const Eigen::VectorXd& state) const;
   [[nodiscard]] Eigen::Matrix3Xd node_displacement_m(const Eigen::VectorXd& state) const;
@@ -40,6 +48,8 @@ struct ReducedMachine {
 /// temperature in the steady state of half the demanded power.
 /// @throws InputError  for a temperature prescribed over time, which a reduced model cannot represent
 /// @throws SolveError  as solver::reduce()
-[[nodiscard]] ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan);
+/// With `moves` it has a Travel, and its error is that over the travel. @throws InputError, SolveError  as travel_of()
+[[nodiscard]] ReducedMachine reduce(const MachineModel& model, const Machine& machine, const ReductionPlan& plan,
+                                    const Listener& listener = {});
 
 }  // namespace driftwright::scenarios

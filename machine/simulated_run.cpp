@@ -11,6 +11,7 @@
 #include "machine/driven_before.hpp"
 #include "machine/moving_run.hpp"
 #include "machine/run_record.hpp"
+#include "machine/travel.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/unusual.hpp"
 #include "solver/energy_balance.hpp"
@@ -42,22 +43,34 @@ class FieldTimes {
 };
 
 bool follows_moves(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram) {
-  return model.full() && moves_axes(machine.axes, cyclogram);
+  return (model.full() || model.reduced()->travel) && moves_axes(machine.axes, cyclogram);
 }
 
-/// felt_run(), of a full model also while axes move.
+/// felt_run(), of a model that follows moves also while axes move.
 MachineRun followed_run(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram) {
   if (!follows_moves(machine, model, cyclogram)) return felt_run(machine, cyclogram);
   require_columns(machine, cyclogram);
   return felt_run_as_far_as_known(machine, cyclogram);
 }
 
-/// The machine at the pose that a cyclogram has from a time on, as simulate_moving(); nullptr: at the model's own.
-const PosedMachine* posed_from(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram, double time_s) {
+/// The pose that a cyclogram has from a time on, as simulate_moving().
+Pose pose_from(const MachineModel& machine, const Cyclogram& cyclogram, double time_s) {
   const std::vector<PoseStretch> stretches = pose_stretches(machine.axes, cyclogram);
   const auto at =
       std::find_if(stretches.begin(), stretches.end(), [&](const auto& s) { return time_s < s.end_s * (1.0 - 1e-12); });
-  return posed_at(machine, model, (at == stretches.end() ? stretches.back() : *at).pose);
+  return (at == stretches.end() ? stretches.back() : *at).pose;
+}
+
+/// Displacements of all nodes at the pose that the cyclogram has at a time. @param nodes_K  temperatures of the nodes
+Eigen::Matrix3Xd displacement_m(const MachineModel& machine, const Model& model, const Cyclogram& cyclogram, double time_s,
+                                const Eigen::VectorXd& state, const Eigen::VectorXd& nodes_K) {
+  const bool moves = follows_moves(machine, model, cyclogram);
+  if (const ReducedMachine* reduced = model.reduced()) {
+    const PosedReduced* posed = moves ? reduced_at(machine, model, pose_from(machine, cyclogram, time_s)) : nullptr;
+    return posed ? displacement_at(machine, *reduced, *posed, state) : reduced->node_displacement_m(state);
+  }
+  const PosedMachine* posed = moves ? posed_at(machine, model, pose_from(machine, cyclogram, time_s)) : nullptr;
+  return (posed ? posed->elasticity : model.full()->elasticity)->displacement(nodes_K);
 }
 
 void write_fields(const Scenario& scenario, const Model& model, const solver::RegionMaterials& materials,
@@ -65,15 +78,11 @@ void write_fields(const Scenario& scenario, const Model& model, const solver::Re
   const ReducedMachine* reduced = model.reduced();
   const Eigen::VectorXd nodes =
       reduced ? reduced->node_temperature_K(state) : Eigen::VectorXd(state.head(model.mesh().n_nodes()));
-  const bool moves = follows_moves(*scenario.machine, model, cyclogram);
-  const PosedMachine* posed = moves ? posed_from(*scenario.machine, model, cyclogram, time_s) : nullptr;
-  const Eigen::Matrix3Xd displacement_m = reduced ? reduced->node_displacement_m(state)
-                                          : posed ? posed->elasticity->displacement(nodes)
-                                                  : model.full()->elasticity->displacement(nodes);
+  const Eigen::Matrix3Xd moved_m = displacement_m(*scenario.machine, model, cyclogram, time_s, state, nodes);
   WholeFields whole{.time_s = time_s,
                     .temperature_degC = (nodes.array() + (scenario.machine->reference_K - kZeroCelsius_K)).matrix(),
-                    .displacement_um = 1e6 * displacement_m};
-  if (scenario.solver.stresses) whole.stress = solver::stress_field(model.mesh(), materials, displacement_m, nodes);
+                    .displacement_um = 1e6 * moved_m};
+  if (scenario.solver.stresses) whole.stress = solver::stress_field(model.mesh(), materials, moved_m, nodes);
   fields.take(whole);
 }
 

@@ -55,7 +55,7 @@ std::vector<JointPoint> joint_points(const mesh::Mesh& mesh, const mesh::Joint& 
                        .weight_a = {s.N.data(), s.N.data() + s.n},
                        .weight_b = {sb.N.data(), sb.N.data() + sb.n},
                        .area_m2 = q.weight * j.det,
-                       .gap_m = opposite.distance_m,
+                       .gap_m = std::abs((opposite.position_m - position).dot(normal)),
                        .position_m = position,
                        .normal = normal,
                        .normal_error = mesh::normal_error(normals[f])};

@@ -15,7 +15,7 @@ struct JointPoint {
   std::vector<double> weight_a,
       weight_b;          ///< shape functions; each sums to one, so that heat is conserved
   double area_m2 = 0.0;  ///< quadrature weight times area ratio
-  double gap_m = 0.0;    ///< distance between the two points
+  double gap_m = 0.0;    ///< distance between the two points along the normal
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length, either orientation; smoothed, see mesh/normals.hpp
   double normal_error = 0.0;                         ///< error of the normal [rad], see mesh/normals.hpp

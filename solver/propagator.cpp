@@ -111,6 +111,12 @@ Propagator::Propagator(const ReducedSystem& system) : system_(system), decomposi
 
 Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient, const std::vector<double>& output_s,
                            const Eigen::VectorXd& start, bool with_heat, Eigen::MatrixXd* states, double from_s) {
+  return run(behind(from_s, stretches_of(system_, cyclogram, ambient)), ambient, output_s, start, with_heat, states);
+}
+
+Trajectory Propagator::run(const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
+                           const std::vector<double>& output_s, const Eigen::VectorXd& start, bool with_heat,
+                           Eigen::MatrixXd* states) {
   const auto n = static_cast<Eigen::Index>(system_.size()), n_times = static_cast<Eigen::Index>(output_s.size());
   const auto n_sources = static_cast<Eigen::Index>(system_.sources.size()),
              n_exchanges = static_cast<Eigen::Index>(system_.exchanges.size());
@@ -137,7 +143,6 @@ Trajectory Propagator::run(const Cyclogram& cyclogram, const TimeSeries& ambient
   Decomposition* decomposition = nullptr;
   Eigen::VectorXd z, load;  // state and load of everything except the ambient, in the eigenvectors
   std::size_t next = 0;
-  const std::vector<LinearStretch> stretches = behind(from_s, stretches_of(system_, cyclogram, ambient));
   require_within(stretches, output_s);
   for (const LinearStretch& stretch : stretches) {
     const double length_s = stretch.end_s - stretch.start_s, ambient_K = ambient_in_order.at(stretch.start_s),

@@ -30,6 +30,11 @@ class Propagator {
                                const Eigen::VectorXd& start, bool with_heat = false, Eigen::MatrixXd* states = nullptr,
                                double from_s = 0.0);
 
+  /// The same over stretches of a cyclogram (stretches_of()), from the start of the first one on.
+  [[nodiscard]] Trajectory run(const std::vector<LinearStretch>& stretches, const TimeSeries& ambient,
+                               const std::vector<double>& output_s, const Eigen::VectorXd& start, bool with_heat = false,
+                               Eigen::MatrixXd* states = nullptr);
+
   /// The same run, stored for computing similar systems; none if it is too large to store.
   [[nodiscard]] std::optional<Course> course(const Cyclogram& cyclogram, const TimeSeries& ambient,
                                              const std::vector<double>& output_s, const Eigen::VectorXd& start) {

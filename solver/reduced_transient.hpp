@@ -12,4 +12,10 @@ namespace driftwright::solver {
                                   const std::vector<double>& output_s, const TransientOptions& options,
                                   const Eigen::VectorXd& start, const OutputCallback& callback = {});
 
+/// The same over stretches of the cyclogram (stretches_of()), from the start of the first one on.
+[[nodiscard]] Trajectory simulate(const ReducedSystem& system, const std::vector<LinearStretch>& stretches,
+                                  const TimeSeries& ambient, const std::vector<double>& output_s,
+                                  const TransientOptions& options, const Eigen::VectorXd& start,
+                                  const OutputCallback& callback = {});
+
 }  // namespace driftwright::solver

@@ -13,6 +13,7 @@
 #include "base/quantity.hpp"
 #include "compensation/sensors/interpolate.hpp"
 #include "machine/machine_key.hpp"
+#include "machine/moving_run.hpp"
 #include "scenarios/reader/felt_run.hpp"
 #include "scenarios/reader/read_cyclogram.hpp"
 #include "studies/known_band.hpp"
@@ -148,10 +149,15 @@ std::shared_ptr<const scenarios::Model> PredictingModels::of(const scenarios::Sc
     for (const Cyclogram& c : scenario.cyclograms) asked.push_back(&c);
     plan = scenarios::machine_key(*scenario.machine, scenarios::reduction_plan(scenario, asked), "");
   }
+  if (scenarios::moves_axes(scenario.machine->axes, cyclogram)) {  // its model has these poses alone
+    for (const scenarios::Pose& pose : scenarios::further_poses(scenario.machine->axes, {&cyclogram}))
+      plan += scenarios::pose_words(scenario.machine->axes, pose) + "\n";
+  }
   const std::lock_guard lock(known_->mutex);
   std::shared_ptr<const scenarios::Model>& model = known_->by_plan[plan];
   if (!model)
-    model = std::make_shared<const scenarios::Model>(scenarios::open_model(scenario, {&cyclogram}, listener, false));
+    model = std::make_shared<const scenarios::Model>(
+        scenarios::open_model(scenario, {&cyclogram}, listener, false, nullptr, nullptr, scenarios::Follows::kMoves));
   return model;
 }
 

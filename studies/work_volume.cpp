@@ -62,10 +62,14 @@ WorkVolume study_volume(const scenarios::Scenario& scenario, const mesh::Mesh& d
   listener.begin(fmt::format("simulating {:.0f} min", cyclogram.duration_s() / 60.0));
   const std::vector<double> rows_s = scenarios::output_times_s(cyclogram, scenario.solver.output_interval_s, volume.time_s);
   Eigen::Index next = 0;
+  const scenarios::ReducedMachine* reduced = model.reduced();
+  const auto nodes_K = [&](const Eigen::VectorXd& state) -> Eigen::VectorXd {
+    return reduced ? reduced->node_temperature_K(state) : state.head(drawn.n_nodes());
+  };
   const auto take = [&](double time_s, const Eigen::VectorXd& state) {
     listener.share(time_s / cyclogram.duration_s());
     while (next < n_times && volume.time_s[static_cast<std::size_t>(next)] <= time_s * (1.0 + 1e-9))  // as output_times_s()
-      theta_K.col(next++) = state.head(drawn.n_nodes());
+      theta_K.col(next++) = nodes_K(state);
   };
   const Eigen::VectorXd start =
       scenarios::start_of(machine, model) + scenarios::warmer_start_K(machine, cyclogram) * scenarios::ones_of(model);

@@ -316,8 +316,8 @@ void require_resting(const std::vector<MovingAxis>& axes, const Cyclogram& cyclo
       const std::string to = axes[i].words(stretch.pose[i]);
       throw InputError(axes[i].where,
                        fmt::format("cyclogram '{}' moves axis '{}' to {}, but this model holds it at {}. If it stays "
-                                   "there, write `at: {}`. Only `simulate`, and `run` with `volume`, of the full model "
-                                   "(`solver: {{model: full}}`) follow moves; otherwise leave out the column '{}'",
+                                   "there, write `at: {}`. Only `simulate`, `predict`, and `run` with `volume` follow moves; otherwise leave out "
+                                   "the column '{}'",
                                    cyclogram.name, axes[i].name, to, axes[i].words(axes[i].at_SI), to, axes[i].column));
     }
   }

@@ -253,7 +253,7 @@ TEST(Axes, RefuseMovesWhereTheModelHasOnePose) {
   const std::string rows = "{columns: [duration, speed, position_x_mm], rows: [[1 h, 0 rpm, 0 mm], [1 h, 0 rpm, 400 mm]]}";
   Scenario scenario = Slide{.rows = rows}.read();
   scenario.solver.model = ModelKind::kReduced;
-  EXPECT_REFUSED(open_model(scenario, {&scenario.cyclograms[0]}, {}, false), "moves axis 'x' to 400 mm", "model: full");
+  EXPECT_REFUSED(open_model(scenario, {&scenario.cyclograms[0]}, {}, false), "moves axis 'x' to 400 mm", "leave out the column");
   EXPECT_REFUSED(require_resting(scenario.machine->axes, scenario.cyclograms[0]), "`at: 400 mm`", "position_x");
 }
 
