@@ -126,8 +126,6 @@ class Following {
   }
 
   void run() {
-    std::signal(SIGPIPE, SIG_IGN);  // a failed write reports it
-    const EndRequest end_request;
     if (options_.replay.empty())
       follow_source();
     else
@@ -341,6 +339,7 @@ class Following {
   std::string source_name_;
   follow::RowText text_;
   follow::Session session_;
+  std::optional<EndRequest> end_request_;
   std::optional<follow::RecordFile> record_;
   Clock::time_point saved_ = Clock::now(), began_;
   std::optional<double> first_s_;
