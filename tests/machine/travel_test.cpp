@@ -101,12 +101,6 @@ void expect_held_over_the_travel(Scenario scenario) {
   EXPECT_LT(most_K, kFar * reduced.reduced()->error.temperature_K) << reduced.words();
   EXPECT_LT(most_um, kFar * 1e6 * reduced.reduced()->error.displacement_m) << reduced.words();
   EXPECT_GT(reduced.reduced()->travel->n_training, 1);
-  // The travel matters: outputs at one of the poses are not those at the model's own.
-  const auto outputs = [](const solver::ReducedSystem& system) { return system.outputs.state; };
-  const Eigen::MatrixXd own = outputs(reduced.reduced()->system);
-  const Eigen::VectorXd moved = (outputs(reduced.reduced_poses[0].system) - own).rowwise().norm();
-  EXPECT_GT(moved.cwiseQuotient(own.rowwise().norm()).maxCoeff(), 1e-3);  // displacements; temperatures are read as before
-
   // Temperatures of all nodes, which `volume` bends the machine by.
   const auto at_end = [&](const Model& model) {
     Eigen::VectorXd state;
