@@ -101,6 +101,8 @@ void expect_held_over_the_travel(Scenario scenario) {
   EXPECT_LT(most_K, kFar * reduced.reduced()->error.temperature_K) << reduced.words();
   EXPECT_LT(most_um, kFar * 1e6 * reduced.reduced()->error.displacement_m) << reduced.words();
   EXPECT_GT(reduced.reduced()->travel->n_training, 1);
+  const auto outputs = [](const solver::ReducedSystem& system) { return system.outputs.state; };
+
   // Temperatures of all nodes, which `volume` bends the machine by.
   const auto at_end = [&](const Model& model) {
     Eigen::VectorXd state;
