@@ -120,6 +120,8 @@ class Following {
         session_(models_of(options, progress_.listener())) {
     progress_.end();
     (void)session_.wanted();
+    std::signal(SIGPIPE, SIG_IGN);  // a failed write reports it
+    end_request_.emplace();         // before anybody is told that it runs
     if (!options.serve) return;
     page_ = std::make_unique<follow::PageServer>(page_address(options), followed_page(options, session_));
     fmt::print(stderr, "follow: the page is at {}{}\n", page_->url(), options.token.empty() ? "" : "?token=...");
