@@ -13,7 +13,7 @@ namespace driftwright::follow {
 namespace {
 
 constexpr double kOn = 0.99, kOff = 0.01;  // limits of trust
-constexpr const char* kStateFormat = "driftwright follow 1";
+constexpr const char* kStateFormat = "driftwright follow 2";
 
 }  // namespace
 

@@ -64,6 +64,38 @@ void write_readings(Dialect& to, const FormulaPart& part) {
   }
 }
 
+/// Less trust after a start unlike those of the training runs, as in drift_repair().
+void write_start(Dialect& to, const FormulaPart& part) {
+  const FailSafe& safe = part.safe;
+  std::vector<std::size_t> watched;
+  for (std::size_t k = 0; k < safe.guards.size(); ++k) {
+    if (std::isfinite(safe.guards[k].start_within)) watched.push_back(k);
+  }
+  if (to.is_called() || watched.empty()) return;
+  const std::string mean = to.variable("sum"), off = to.variable("out"), minus = to.variable("room"),
+                    furthest = to.variable("wanted"), unknown = to.kept(part.own + "unknown"), started = to.kept("started");
+  const auto above_offset = [&](std::size_t k) {
+    return fmt::format("{} - {}", to.reading(part.readings[k]), to.number(safe.guards[k].start_offset));
+  };
+  to.set(mean, to.number(0.0));
+  for (std::size_t k : watched) to.set(mean, fmt::format("{} + {}", mean, above_offset(k)));
+  to.set(mean, fmt::format("{} / {}", mean, to.number(static_cast<double>(watched.size()))));
+  to.set(furthest, to.number(0.0));
+  for (std::size_t k : watched) {
+    to.set(off, fmt::format("( {} - {} ) / {}", above_offset(k), mean, to.number(safe.guards[k].start_within)));
+    to.set(minus, fmt::format("{} - {}", to.number(0.0), off));
+    to.at_least(furthest, off);
+    to.at_least(furthest, minus);
+  }
+  to.set(off, to.number(0.0));
+  to.set_if(furthest, Dialect::Compare::kGreater, to.number(1.0), off, to.number(1.0));
+  to.set_if(started, Dialect::Compare::kEqual, to.number(0.0), unknown, off);
+  to.set(minus, fmt::format("{} - {}", to.number(1.0), unknown));
+  to.at_most(to.variable("deserved"), minus);
+  if (std::isfinite(safe.start_s))
+    to.set(unknown, fmt::format("{} * {}", unknown, to.number(std::exp(-safe.period_s / safe.start_s))));
+}
+
 /// The formula of these readings, in `sum`.
 void write_formula(Dialect& to, const FormulaPart& part) {
   const DriftModel& model = part.model;
@@ -140,16 +172,21 @@ std::string write_guard(Dialect& to, const FormulaPart& part) {
 /// Whether the readings of two formulas are the same, with the same ranges.
 bool read_alike(const FormulaPart& a, const FormulaPart& b) {
   const auto is_same = [](const FailSafe::Guard& x, const FailSafe::Guard& y) {
-    return x.input == y.input && x.unit == y.unit && x.low == y.low && x.high == y.high;
+    return x.input == y.input && x.unit == y.unit && x.low == y.low && x.high == y.high &&
+           x.start_offset == y.start_offset && x.start_within == y.start_within;
   };
-  return std::equal(a.safe.guards.begin(), a.safe.guards.end(), b.safe.guards.begin(), b.safe.guards.end(), is_same);
+  return a.safe.start_s == b.safe.start_s &&
+         std::equal(a.safe.guards.begin(), a.safe.guards.end(), b.safe.guards.begin(), b.safe.guards.end(), is_same);
 }
 
 /// The formulas one after the other. @return the variables with their corrections
 std::vector<std::string> write_parts(Dialect& to, const std::vector<FormulaPart>& parts) {
   std::vector<std::string> corrections;
   for (const FormulaPart& part : parts) {
-    if (&part == &parts.front() || !read_alike(part, *(&part - 1))) write_readings(to, part);
+    if (&part == &parts.front() || !read_alike(part, *(&part - 1))) {
+      write_readings(to, part);
+      write_start(to, part);
+    }
     write_formula(to, part);
     corrections.push_back(write_guard(to, part));
   }

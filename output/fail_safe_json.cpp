@@ -1,5 +1,6 @@
 #include "output/fail_safe_json.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "output/json_value.hpp"
@@ -7,6 +8,10 @@
 namespace driftwright::output {
 
 using compensation::FailSafe;
+
+namespace {
+constexpr double kNotWatched = std::numeric_limits<double>::infinity();
+}
 
 Json fail_safe_json(const FailSafe& s) {
   Json safe = {{"from_start", s.from_start},
@@ -17,6 +22,7 @@ Json fail_safe_json(const FailSafe& s) {
                {"fade_s", s.fade_s},
                {"stale_s", s.stale_s},
                {"guards", Json::array()}};
+  if (std::isfinite(s.start_s)) safe["start_s"] = s.start_s;
   for (const FailSafe::Guard& g : s.guards) {
     safe["guards"].push_back({{"input", g.input},
                               {"unit", g.unit},
@@ -26,6 +32,10 @@ Json fail_safe_json(const FailSafe& s) {
                               {"others_intercept", g.others_intercept},
                               {"others_coefficient", g.others_coefficient},
                               {"most_apart", g.most_apart}});
+    if (std::isfinite(g.start_within)) {
+      safe["guards"].back()["start_offset"] = g.start_offset;
+      safe["guards"].back()["start_within"] = g.start_within;
+    }
   }
   return safe;
 }
@@ -39,6 +49,7 @@ FailSafe fail_safe_of(const Json& s) {
   safe.most_rate_um_s = finite(s, "most_rate_um_s");
   safe.fade_s = positive(s, "fade_s");
   safe.stale_s = finite(s, "stale_s");
+  if (s.contains("start_s")) safe.start_s = positive(s, "start_s");
   if (safe.lowest_um > safe.highest_um)
     throw InputError(fmt::format("`lowest_um` {} is above `highest_um` {}", safe.lowest_um, safe.highest_um));
   if (safe.most_rate_um_s < 0.0) throw InputError(fmt::format("`most_rate_um_s` {} is below 0", safe.most_rate_um_s));
@@ -50,7 +61,9 @@ FailSafe fail_safe_of(const Json& s) {
                            .most_jump = number_or(g, "most_jump", std::numeric_limits<double>::infinity()),
                            .others_intercept = finite(g, "others_intercept"),
                            .others_coefficient = value<std::vector<double>>(g, "others_coefficient"),
-                           .most_apart = finite(g, "most_apart")});
+                           .most_apart = finite(g, "most_apart"),
+                           .start_offset = g.contains("start_offset") ? finite(g, "start_offset") : 0.0,
+                           .start_within = g.contains("start_within") ? positive(g, "start_within") : kNotWatched});
     const FailSafe::Guard& guard = safe.guards.back();
     if (!(guard.low <= guard.high))  // equal if a drive was 0 in all training runs
       throw InputError(fmt::format("guard '{}' has `low` {} above `high` {}", guard.input, guard.low, guard.high));

@@ -91,6 +91,26 @@ static void doubt(drift_input_state* in, int why, double size, double until_s) {
   in->doubted_until_s = until_s;
 }
 
+/* Whether the first readings differ among each other otherwise than at the start of the training runs. */
+static int is_strange_start(const drift_fail_safe* safe, const drift_input_state* inputs, const double* readings,
+                            double soon_s) {
+  double mean = 0.0;
+  int k, pass, n_watched = 0;
+  for (pass = 0; pass < 2; ++pass) {
+    for (k = 0; k < safe->n_inputs; ++k) {
+      const drift_guard* guard = &safe->guards[k];
+      if (!isfinite(guard->start_within) || is_doubted(&inputs[k], 0.0, soon_s)) continue;
+      if (pass == 0) {
+        mean += readings[k] - guard->start_offset;
+        ++n_watched;
+      } else if (fabs(readings[k] - guard->start_offset - mean / n_watched) > guard->start_within) {
+        return 1;
+      }
+    }
+  }
+  return 0;
+}
+
 double drift_repair(const drift_fail_safe* safe, drift_state* state, drift_input_state* inputs, double* room,
                     const double* readings, double dt_s, double* repaired) {
   const int n = safe->n_inputs, is_first = !state->has_repaired;
@@ -154,6 +174,9 @@ double drift_repair(const drift_fail_safe* safe, drift_state* state, drift_input
     if (worst < 0) break;
     doubt(&inputs[worst], DRIFT_APART, x[worst] - by_others(&safe->guards[worst], n, x), until_s);
   }
+
+  if (is_first) state->is_strange = is_strange_start(safe, inputs, readings, soon_s);
+  if (state->is_strange) deserved = 1.0 - exp(-time_s / safe->start_s);
 
   for (k = 0; k < n; ++k) { /* what the readings deserve */
     const drift_guard* guard = &safe->guards[k];

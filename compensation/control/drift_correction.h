@@ -32,6 +32,8 @@ typedef struct {
   double others_intercept;          /* what the other inputs lead to: others_intercept + sum_j others_coefficient[j] x_j */
   const double* others_coefficient; /* n_inputs numbers, 0 for itself; a null pointer: no other input tells of this one */
   double most_apart;                /* by which reading and others may differ, unit of the reading; > 0 */
+  double start_offset; /* first reading of a run minus the mean of those that are watched, unit of the reading */
+  double start_within; /* by which it may differ from this; HUGE_VAL: the start of this input is not watched */
 } drift_guard;
 
 typedef struct {
@@ -43,6 +45,7 @@ typedef struct {
   double fade_s;             /* time constant with which trust is lost, and won again; > 0 */
   double back_after_s;       /* for so long a sensor must be beyond doubt before it counts again */
   double back_within;        /* share of most_apart within which a doubted reading must be to be on its way back */
+  double start_s;            /* time constant with which the formula forgets how a run started; HUGE_VAL: never */
   double lowest_um, highest_um, most_rate_um_s; /* clamp and slew limit of the correction */
 } drift_fail_safe;
 
@@ -86,6 +89,7 @@ typedef struct {
 /* What is remembered of the run; all zero before the first row. */
 typedef struct {
   int has_repaired, has_guarded;
+  int is_strange;       /* the run started as no training run did */
   double time_s;        /* since the first row */
   double deserved;      /* trust that the readings of this row deserve, 0 to 1 */
   double trust;         /* that the prediction was multiplied by, 0 to 1 */
@@ -109,6 +113,10 @@ typedef struct {
  * replaced all at once by what those beyond doubt lead to. Up to most_replaced of them cost no trust; more, or one that
  * nothing can replace, cost all of it. A rise that has no reading in the first row goes on from its replacement where it
  * begins.
+ *
+ * Lags of speeds start at standstill. Where the first readings say that the machine is not as it was at the start of the
+ * training runs (a warm one, say), they start wrong: trust is 0 in the first row and comes back while the formula forgets,
+ * with start_s. The readings must differ among each other as then, up to what they have in common.
  *
  * readings: n_inputs, in their units; what is no finite number is missing. repaired: n_inputs; never missing.
  * Returns the trust that the readings deserve, 0 to 1. */

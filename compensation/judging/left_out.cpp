@@ -66,13 +66,24 @@ double noise_in(std::span<const ResidualSeries> series, double stated_um) {
 struct Seen {
   std::vector<Record> readings;
   std::vector<std::vector<double>> predicted_um;
+  std::vector<Record> starts;  ///< the first row of each run, as read; nothing but NaN with a lead-in
 };
+Record first_row(const MachineRun& run) {
+  Record row{.source = run.readings.source, .time_s = {run.readings.time_s.front()}, .channels = {}};
+  for (const Channel& c : run.readings.channels) {
+    const bool is_start = run.n_before == 0;
+    row.channels.push_back({c.name, c.unit, {is_start ? c.values.front() : std::numeric_limits<double>::quiet_NaN()}});
+  }
+  return row;
+}
+
 Seen seen_in(const Predictor& predictor, std::span<const MachineRun> training, bool from_start) {
   Seen seen;
   // the lead-in of a run is followed, but sets no limits: its rows may belong to judged runs
   for (const MachineRun& run : training) {
     const std::vector<double> drift_um = live(predictor, run);
     seen.predicted_um.emplace_back(drift_um.begin() + static_cast<std::ptrdiff_t>(run.n_before), drift_um.end());
+    seen.starts.push_back(first_row(run));
     seen.readings.push_back(own_rows(from_start ? counted_from_start(run.readings, {}) : run.readings, run.n_before));
   }
   return seen;
@@ -100,6 +111,9 @@ Seen seen_in(const Predictor& predictor, const FoldedRuns& folds, std::size_t fo
   for (std::size_t r = 0; r < folds.runs.size(); ++r) {
     const std::vector<bool> hidden = hidden_rows(folds.runs[r], s.target, folds.folds[fold].hidden[r]);
     const std::size_t n_before = folds.runs[r].n_before;
+    for (Channel& c : seen.starts[r].channels) {
+      if (hidden.front()) c.values.front() = std::numeric_limits<double>::quiet_NaN();
+    }
     for (std::size_t i = n_before; i < hidden.size(); ++i) {
       if (!hidden[i]) continue;
       seen.predicted_um[r][i - n_before] = std::numeric_limits<double>::quiet_NaN();
@@ -109,9 +123,20 @@ Seen seen_in(const Predictor& predictor, const FoldedRuns& folds, std::size_t fo
   return seen;
 }
 
+/// The first readings of each run, in the order of the guards.
+std::vector<std::vector<double>> starts_of(const Seen& seen, const FailSafe& safe) {
+  std::vector<std::vector<double>> starts;
+  for (const Record& row : seen.starts) {
+    starts.emplace_back();
+    for (const FailSafe::Guard& g : safe.guards) starts.back().push_back(row.at(g.input).values.front());
+  }
+  return starts;
+}
+
 /// Fail-safes of a fold with each room. Relations replace readings that are missing or jump; whether they would doubt sound
 /// ones is not tried.
-std::vector<FailSafe> fail_safes_of(const Seen& seen, const std::vector<std::string>& inputs, const LeftOutSettings& s) {
+std::vector<FailSafe> fail_safes_of(const Seen& seen, const Predictor& predictor, const std::vector<std::string>& inputs,
+                                    const LeftOutSettings& s) {
   std::vector<FailSafe> list;
   for (double room : kRooms)
     list.push_back(learn_limits(seen.readings, inputs, seen.predicted_um, s.from_start, true, room));
@@ -127,13 +152,17 @@ std::vector<FailSafe> fail_safes_of(const Seen& seen, const std::vector<std::str
     }
   } catch (const InputError&) {  // no row of the rest has all readings: nothing is replaced
   }
-  for (FailSafe& safe : list) limit(safe, s.limits);
+  for (FailSafe& safe : list) {
+    watch_start(safe, starts_of(seen, safe), predictor.memory_s());
+    limit(safe, s.limits);
+  }
   return list;
 }
 
 FailSafe learned(const Seen& seen, const Predictor& predictor, const LeftOutSettings& s, double room) {
   FailSafe safe =
       learn_fail_safe(seen.readings, names_of(guarded_inputs(predictor)), seen.predicted_um, s.from_start, true, room);
+  watch_start(safe, starts_of(seen, safe), predictor.memory_s());
   limit(safe, s.limits);
   return safe;
 }
@@ -199,7 +228,7 @@ double set_left_out(DeployedPredictor& d, const FoldPredictors& predictors, cons
   const std::vector<std::string> inputs = names_of(guarded_inputs(*d.predictor));
   std::vector<DeployedPredictor> tried(std::size(kRooms));
   for (std::size_t k = 0; k < predictors.size(); ++k) {
-    const std::vector<FailSafe> safes = fail_safes_of(seen_in(*predictors[k], folds, k, s), inputs, s);
+    const std::vector<FailSafe> safes = fail_safes_of(seen_in(*predictors[k], folds, k, s), *predictors[k], inputs, s);
     std::vector<std::pair<std::size_t, PredictedDrift>> runs;
     for (std::size_t n = 0; n < tried.size(); ++n) {
       // without inputs to repair the prediction does not depend on the room

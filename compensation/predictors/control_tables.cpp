@@ -14,7 +14,9 @@ FailSafeTable fail_safe_table(const FailSafe& safe) {
                             .most_jump = g.most_jump,
                             .others_intercept = g.others_intercept,
                             .others_coefficient = g.others_coefficient.empty() ? nullptr : g.others_coefficient.data(),
-                            .most_apart = g.most_apart});
+                            .most_apart = g.most_apart,
+                            .start_offset = g.start_offset,
+                            .start_within = g.start_within});
   }
   table.safe = {.n_inputs = static_cast<int>(table.guards.size()),
                 .guards = table.guards.data(),
@@ -24,6 +26,7 @@ FailSafeTable fail_safe_table(const FailSafe& safe) {
                 .fade_s = safe.fade_s,
                 .back_after_s = kBackAfter * safe.fade_s,
                 .back_within = kBackWithin,
+                .start_s = safe.start_s,
                 .lowest_um = safe.lowest_um,
                 .highest_um = safe.highest_um,
                 .most_rate_um_s = safe.most_rate_um_s};

@@ -13,11 +13,13 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr std::size_t kNumbersOfState = 7, kNumbersOfInput = 13;
+constexpr std::size_t kNumbersOfState = 8, kNumbersOfInput = 13;
+constexpr double kForgotten = 3.0;  // time constants: 5 % of the start are left
 
 std::array<double, kNumbersOfState> numbers_of(const drift_state& s) {
   return {static_cast<double>(s.has_repaired),
           static_cast<double>(s.has_guarded),
+          static_cast<double>(s.is_strange),
           s.time_s,
           s.deserved,
           s.trust,
@@ -25,7 +27,7 @@ std::array<double, kNumbersOfState> numbers_of(const drift_state& s) {
           s.correction_um};
 }
 drift_state state_of(const double* n) {
-  return {n[0] != 0.0, n[1] != 0.0, n[2], n[3], n[4], n[5], n[6]};
+  return {n[0] != 0.0, n[1] != 0.0, n[2] != 0.0, n[3], n[4], n[5], n[6], n[7]};
 }
 
 std::array<double, kNumbersOfInput> numbers_of(const drift_input_state& s) {
@@ -109,6 +111,8 @@ std::vector<std::string> DeployedFollower::doubted() const {
     if (inputs_[k].is_doubted) names.push_back(deployed_.fail_safe->guards[k].input);
   }
   for (std::string& name : follower_->given_up()) names.push_back(std::move(name));
+  if (repair_.is_strange && !(repair_.time_s > kForgotten * deployed_.fail_safe->start_s))
+    names.emplace_back(fmt::format("the start: {}", kStrangeStart));
   if (follower_->deserved_trust() < 1.0) names.emplace_back("the model: its thermometers keep away from what it expects");
   return names;
 }

@@ -32,7 +32,9 @@ std::optional<double> interval_in_force_um(const DeployedPredictor& deployed, do
 }
 
 PredictedDrift predict(const Predictor& predictor, const FailSafe& safe, const MachineRun& run) {
-  PredictedDrift p{.readings = repaired(safe, run.readings), .drift_um = {}, .deviation_um = {}};
+  PredictedDrift p{.readings = repaired(run.n_before > 0 ? with_known_start(safe) : safe, run.readings),
+                   .drift_um = {},
+                   .deviation_um = {}};
   MachineRun mended = run;
   mended.readings = p.readings.readings;
   const std::unique_ptr<Follower> follower = predictor.follow();

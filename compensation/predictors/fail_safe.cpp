@@ -95,6 +95,10 @@ std::string words(const drift_input_state& state, const std::string& unit) {
   }
 }
 
+bool is_of_thermometer(const FailSafe::Guard& g) {
+  return g.unit == "degC" || g.unit == "K";
+}
+
 double step_s(const std::vector<double>& time_s, std::size_t row) {
   return row > 0 ? time_s[row] - time_s[row - 1] : 0.0;
 }
@@ -182,6 +186,37 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
   return safe;
 }
 
+void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, double memory_s) {
+  safe = with_known_start(std::move(safe));
+  if (!(memory_s > 0.0)) return;
+  safe.start_s = safe.from_start ? std::numeric_limits<double>::infinity() : memory_s;
+  std::vector<std::size_t> watched;
+  for (std::size_t k = 0; k < safe.guards.size(); ++k) {
+    if (is_of_thermometer(safe.guards[k])) watched.push_back(k);
+  }
+  if (watched.size() < 2) return;
+  std::vector<Range> offsets(watched.size());
+  for (const std::vector<double>& start : starts) {
+    double sum = 0.0;
+    for (std::size_t k : watched) sum += start[k];
+    if (!std::isfinite(sum)) continue;
+    for (std::size_t n = 0; n < watched.size(); ++n)
+      offsets[n].take(start[watched[n]] - sum / static_cast<double>(watched.size()));
+  }
+  for (std::size_t n = 0; n < watched.size(); ++n) {
+    if (!(offsets[n].low <= offsets[n].high)) return;
+    FailSafe::Guard& g = safe.guards[watched[n]];
+    g.start_offset = 0.5 * (offsets[n].low + offsets[n].high);
+    const double half = 0.5 * offsets[n].width();
+    g.start_within = half + std::max(half, kLeastApart_K);
+  }
+}
+
+FailSafe with_known_start(FailSafe safe) {
+  for (FailSafe::Guard& g : safe.guards) g.start_within = std::numeric_limits<double>::infinity();
+  return safe;
+}
+
 void limit(FailSafe& safe, const CorrectionLimits& limits) {
   safe.lowest_um = std::max(safe.lowest_um, -limits.most_um);
   safe.highest_um = std::min(safe.highest_um, limits.most_um);
@@ -214,6 +249,7 @@ Repaired repaired(const FailSafe& safe, Record readings) {
       was_doubted[k] = static_cast<char>(inputs[k].is_doubted);
       (*channel[k])[i] = x[k];
     }
+    if (i == 0 && state.is_strange) result.events.push_back(kStrangeStart);
   }
   return result;
 }

@@ -2,6 +2,7 @@
 // The fail-safe between a predictor and the axis: limits the harm of a broken sensor, or of a state that the model has never
 // seen.
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct FailSafe {
     /// Of all inputs in their order, 0 for itself and for drives; empty without other inputs.
     std::vector<double> others_coefficient;
     double most_apart = 0.0;
+    /// First reading of a run minus the mean of those of all watched inputs, and the largest allowed difference from this.
+    double start_offset = 0.0, start_within = std::numeric_limits<double>::infinity();  ///< infinite: not watched
   };
   std::vector<Guard> guards;
   bool from_start = false;  ///< limits and relations apply to readings minus the first one of the run, except for drives
@@ -36,6 +39,8 @@ struct FailSafe {
   double most_rate_um_s = 0.0;               ///< slew limit of the correction
   double fade_s = 600.0;                     ///< time constant with which trust is lost and regained
   double stale_s = 300.0;  ///< an input without a reading for this long is doubted; until then its last reading applies
+  /// Time constant with which the predictor forgets how a run started; infinite if it never does.
+  double start_s = std::numeric_limits<double>::infinity();
 };
 
 /// The use of relations between the inputs: they replace readings that are missing or jump, and those that are too far from
@@ -60,6 +65,21 @@ enum class Redundancy { kReplaces, kDoubts };
 [[nodiscard]] FailSafe learn_limits(std::span<const Record> training, const std::vector<std::string>& inputs,
                                     const std::vector<std::vector<double>>& predicted, bool from_start,
                                     bool is_counted = false, double room = 1.0);
+
+/// Watches the start of a run: a predictor with lags of a drive takes for granted that the machine starts as in its training
+/// runs, usually at rest and cold. A machine that has just worked shows it by differences between its thermometers; trust is
+/// then 0 at the start, and comes back with `memory_s`, or not at all if the drift counts from the start.
+/// @param starts    the first row of each training run whose history is not known: readings of the guards, NaN where missing
+/// @param memory_s  Predictor::memory_s(); 0: nothing is watched
+void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, double memory_s);
+
+/// Why trust is low then, for a person.
+inline constexpr const char* kStrangeStart =
+    "the thermometers differ from each other otherwise than where the training runs begin, as on a warm machine, so lags "
+    "start wrong; begin when the machine is as cold as there, or give first the rows since it was";
+
+/// The same fail-safe for a run whose history is known: its start is not watched.
+[[nodiscard]] FailSafe with_known_start(FailSafe safe);
 
 /// Narrows clamp and slew limit: no correction larger than `most_um`, and none that changes by more than `most_step_um` from
 /// one reading to the next, which are `period_s` apart.

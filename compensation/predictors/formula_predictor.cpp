@@ -180,6 +180,12 @@ std::vector<Input> FormulaPredictor::inputs() const {
   return inputs;
 }
 
+double FormulaPredictor::memory_s() const {
+  double longest_s = 0.0;
+  for (const DriftModel::Term& t : model_.terms) longest_s = std::max(longest_s, t.lag_s);
+  return longest_s;
+}
+
 std::unique_ptr<Follower> FormulaPredictor::follow() const {
   return std::make_unique<FormulaFollower>(model_, members_, inputs());
 }

@@ -17,6 +17,8 @@ class FormulaPredictor final : public Predictor {
       : model_(std::move(model)), members_(std::move(members)) {}
   [[nodiscard]] std::vector<Input> inputs() const override;
   [[nodiscard]] bool is_driven() const override { return false; }
+  /// The longest lag of its terms: lags of drives start at standstill, those of temperatures settled.
+  [[nodiscard]] double memory_s() const override;
   /// Kind `formula`: kind of fit, intercept and terms; members.
   [[nodiscard]] std::optional<Written> written() const override;
   [[nodiscard]] const DriftModel* formula() const override { return &model_; }

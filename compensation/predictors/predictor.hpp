@@ -72,6 +72,10 @@ class Predictor {
   /// Interval of the rows that it must be given during a run [s]; 0: of any. Rows that come sooner are left out.
   [[nodiscard]] virtual double period_s() const { return 0.0; }
 
+  /// Longest time constant of what it remembers of the time before a row, and takes for granted at the start [s]; 0: of none,
+  /// or it finds out by itself.
+  [[nodiscard]] virtual double memory_s() const { return 0.0; }
+
   /// True if it checks its own inputs; the inputs of all others are checked by a fail-safe (guarded_inputs()).
   [[nodiscard]] virtual bool looks_after_inputs() const { return false; }
 

@@ -2,6 +2,7 @@
 
 #include "compensation/predictors/fail_safe.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,7 +10,9 @@
 #include <cmath>
 
 #include "base/errors.hpp"
+#include "compensation/predictors/deployed_predictor.hpp"
 #include "compensation/predictors/drift_model.hpp"
+#include "compensation/predictors/formula_predictor.hpp"
 #include "tests/shared/sensor_records.hpp"
 
 namespace driftwright::compensation::fail_safe_test {
@@ -362,6 +365,85 @@ TEST(LearnFailSafe, KeepsTheBoundsOfItsTraining) {
   EXPECT_NEAR(f.safe.highest_um, most_um + 0.5 * (most_um - least_um), 1e-9);
   EXPECT_GE(g.most_apart, 1.5);
   EXPECT_EQ(g.others_coefficient[1], 0.0);
+}
+
+/// A guard of each unit, none of which is ever out of its range.
+FailSafe wide(const std::vector<std::string>& units) {
+  FailSafe safe;
+  for (const std::string& unit : units)
+    safe.guards.push_back({.input = fmt::format("in{}", safe.guards.size()),
+                           .unit = unit,
+                           .low = -1e4,
+                           .high = 1e4,
+                           .most_jump = HUGE_VAL,
+                           .others_coefficient = {}});
+  return safe;
+}
+
+TEST(WatchStart, LearnsHowThermometersDifferWhereTrainingRunsBegin) {
+  FailSafe safe = wide({"degC", "K", "rpm", "degC"});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  // means 20 and 30: differences -2 and -1, 1 and 1, 1 and 0; the run with a gap says nothing
+  const std::vector<std::vector<double>> starts = {
+      {18.0, 21.0, 0.0, 21.0}, {29.0, 31.0, 4000.0, 30.0}, {50.0, nan, 0.0, 0.0}};
+  watch_start(safe, starts, 7200.0);
+  EXPECT_EQ(safe.start_s, 7200.0);
+  const auto is = [&](std::size_t k, double offset, double within) {
+    EXPECT_NEAR(safe.guards[k].start_offset, offset, 1e-12) << k;
+    EXPECT_NEAR(safe.guards[k].start_within, within, 1e-12) << k;
+  };
+  is(0, -1.5, 2.0);  // half of the range, and 1.5 K for instruments
+  is(1, 1.0, 1.5);
+  is(3, 0.5, 2.0);
+  EXPECT_EQ(safe.guards[2].start_within, HUGE_VAL);  // a speed
+  const auto deserved = [&](double warmer_K) {
+    const Record run{.source = "run",
+                     .time_s = {0.0, 7200.0},
+                     .channels = {{"in0", "degC", {8.5 + warmer_K, 10.0}},
+                                  {"in1", "K", {11.0, 10.0}},
+                                  {"in2", "rpm", {100.0, 0.0}},
+                                  {"in3", "degC", {10.5, 10.0}}}};
+    return repaired(safe, run).deserved;
+  };
+  EXPECT_THAT(deserved(2.9), ElementsAre(1.0, 1.0));  // by 2.9 * 2/3 from the mean of three
+  EXPECT_THAT(deserved(3.1), ElementsAre(0.0, 1.0 - std::exp(-1.0)));
+  safe.from_start = true;
+  watch_start(safe, starts, 7200.0);
+  EXPECT_THAT(deserved(3.1), ElementsAre(0.0, 0.0));
+}
+
+TEST(WatchStart, WatchesNothingWhereNothingIsTakenForGranted) {
+  const std::vector<std::vector<double>> starts = {{18.0, 21.0}};
+  const auto is_watched = [&](FailSafe safe, std::span<const std::vector<double>> of, double memory_s) {
+    watch_start(safe, of, memory_s);
+    return std::isfinite(safe.guards.front().start_within);
+  };
+  EXPECT_TRUE(is_watched(wide({"degC", "degC"}), starts, 600.0));
+  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), starts, 0.0));   // no memory
+  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), {}, 600.0));     // no start is known
+  EXPECT_FALSE(is_watched(wide({"degC", "rpm"}), starts, 600.0));  // one thermometer differs from nothing
+  FailSafe safe = wide({"degC", "degC"});
+  watch_start(safe, starts, 600.0);
+  EXPECT_FALSE(std::isfinite(with_known_start(safe).guards.front().start_within));
+}
+
+// The rows before a run say how it starts.
+TEST(Predict, OfARunWithALeadInTakesItsStartForKnown) {
+  const FormulaPredictor formula({.kind = "lag",
+                                  .target = "d",
+                                  .target_unit = "um",
+                                  .terms = {{.input = "in0", .unit = "degC", .coefficient = 1.0, .lag_s = 60.0}}});
+  EXPECT_EQ(formula.memory_s(), 60.0);
+  FailSafe safe = wide({"degC", "degC"});
+  watch_start(safe, std::vector<std::vector<double>>{{20.0, 20.0}}, formula.memory_s());
+  MachineRun run{.cyclogram = {},
+                 .ambient = {},
+                 .readings = {.source = "run",
+                              .time_s = {0.0, 60.0},
+                              .channels = {{"in0", "degC", {30.0, 30.0}}, {"in1", "degC", {20.0, 20.0}}}}};
+  EXPECT_THAT(predict(formula, safe, run).readings.deserved, ElementsAre(0.0, 1.0 - std::exp(-1.0)));
+  run.n_before = 1;
+  EXPECT_THAT(predict(formula, safe, run).readings.deserved, ElementsAre(1.0, 1.0));
 }
 
 TEST(LearnFailSafe, OfOneRowIsRefused) {

@@ -163,7 +163,7 @@ def at_the_browser(program, folder, chromium):
     line = shows(page, follow, 1801, "500,21.5")
     curves(page, follow, 1, "predicted_um")
     curves(page, follow, 2, "correction_um")
-    page.wait("document.querySelectorAll('#network text')[3].textContent")
+    page.wait("document.querySelectorAll('#network text')[3].textContent === '21.50 °C'")
     texts = page.value("Array.from(document.querySelectorAll('#network text'), t => t.textContent)")
     # the nose grows by 4 um/K of the head; the last node is the ambient
     head_degC = 20 + line["axes"]["nose_z"]["predicted_um"] / 4

@@ -26,6 +26,7 @@ using namespace compensation;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 output::PredictorFile formula(bool from_start) {
   output::DeployedModel model = fixtures::deployed(from_start, 60.0);
@@ -100,6 +101,33 @@ TEST(FollowSession, ARestartChangesNothing) {
   for (std::size_t i = 140; i < r.n_samples(); ++i)
     EXPECT_EQ(line_text(whole.take(row_of(r, i))), line_text(second.take(row_of(r, i)))) << i;
   EXPECT_FALSE(resume_from(temporary_folder() / "none.state", second));
+}
+
+// Lags that start at standstill are wrong on a machine that has just worked. A restart does not forget it.
+TEST(FollowSession, AWarmStartIsOffAndSaidUntilItIsForgotten) {
+  const Record r = fixtures::warm_machine(7, 60.0);
+  for (const bool from_start : {true, false}) {
+    const std::string path = path_of(formula(from_start));
+    Session session = session_of(path);
+    session.begin(r.channels);
+    FollowLine line = session.take(row_of(r, 0));
+    EXPECT_EQ(line.state, "off");
+    EXPECT_THAT(line.why, HasSubstr(kStrangeStart));
+    EXPECT_EQ(line.axes[0].trust, 0.0);
+    const std::filesystem::path state = temporary_folder() / "axis.state";
+    write_state(state, session);
+    Session again = session_of(path);
+    again.begin(r.channels);
+    EXPECT_TRUE(resume_from(state, again));
+    for (std::size_t i = 1; i < r.n_samples(); ++i) line = again.take(row_of(r, i));
+    if (from_start) {
+      EXPECT_EQ(line.axes[0].trust, 0.0);
+      EXPECT_THAT(line.why, HasSubstr(kStrangeStart));
+    } else {
+      EXPECT_GT(line.axes[0].trust, 0.99);  // 300 rows; the longest lag has 31
+      EXPECT_THAT(line.why, Not(HasSubstr(kStrangeStart)));
+    }
+  }
 }
 
 TEST(FollowSession, AStateOfAnotherModelOrADamagedOneIsRefused) {

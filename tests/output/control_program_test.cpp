@@ -20,6 +20,7 @@ namespace {
 
 using fixtures::deployed;
 using fixtures::machine;
+using fixtures::warm_machine;
 using ::testing::HasSubstr;
 
 using Memory = std::map<std::string, double>;
@@ -346,6 +347,7 @@ DeployedModel undoubted(bool from_start, double period_s) {
 DeployedModel without_time(DeployedModel d) {
   std::erase_if(d.model.terms, [](const auto& t) { return t.lag_s > 0.0 || t.unit == "rpm"; });
   std::erase_if(d.safe.guards, [](const auto& g) { return g.unit == "rpm"; });
+  d.safe = compensation::with_known_start(std::move(d.safe));
   return d;
 }
 
@@ -376,6 +378,21 @@ void expect_judged(const DeployedModel& d, const ControlProgram& program, Contro
   EXPECT_GT(most_um, 1.0);
 }
 
+/// A machine that has just worked: trust is lost at the start, and comes back if the drift does not count from it.
+void expect_warm_start_as_judged(const DeployedModel& d, const ControlProgram& program, Control& control) {
+  const Record record = warm_machine(5, d.safe.period_s);
+  const compensation::Repaired r = compensation::repaired(d.safe, record);
+  EXPECT_THAT(r.events, ::testing::ElementsAre(compensation::kStrangeStart));
+  EXPECT_EQ(r.deserved.front(), 0.0);
+  EXPECT_EQ(r.deserved.back() > 0.5, !d.safe.from_start);
+  const compensation::GuardedCorrection judged = compensation::guarded(d.safe, r, d.model.predict(r.readings));
+  for (std::size_t i = 0; i < record.n_samples(); ++i) {
+    std::vector<double> readings;
+    for (const auto& g : d.safe.guards) readings.push_back(record.at(g.input).values[i]);
+    ASSERT_NEAR(control.row(readings), judged.correction_um[i], program.error_um) << "row " << i;
+  }
+}
+
 class InCycle : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(FromStartOrNot, InCycle, ::testing::Bool());
 
@@ -384,8 +401,9 @@ TEST_P(InCycle, StructuredTextGivesTheJudgedCorrection) {
   const ControlProgram p = control_program(d, ControlLanguage::kStructuredText, "2nd, best", {}, "a test");
   EXPECT_EQ(p.file, "X_2nd_best.st");
   EXPECT_EQ(p.error_um, 1e-9);
-  StructuredTextControl control(p.text);
+  StructuredTextControl control(p.text), of_warm_machine(p.text);
   expect_judged(d, p, control, true);
+  expect_warm_start_as_judged(d, p, of_warm_machine);
 }
 
 TEST_P(InCycle, SynchronizedActionsOfSiemensGiveTheJudgedCorrection) {
@@ -394,8 +412,9 @@ TEST_P(InCycle, SynchronizedActionsOfSiemensGiveTheJudgedCorrection) {
     const ControlProgram p = control_program(d, ControlLanguage::kSiemens, "ridge", {'Z', against_dk}, "a test");
     EXPECT_EQ(p.file, "RIDGE.SPF");
     EXPECT_EQ(p.error_um, 1e-9);
-    SiemensControl control(p.text, 8.0, against_dk);
+    SiemensControl control(p.text, 8.0, against_dk), of_warm_machine(p.text, 8.0, against_dk);
     expect_judged(d, p, control, true);
+    expect_warm_start_as_judged(d, p, of_warm_machine);
   }
 }
 

@@ -22,6 +22,7 @@ using compensation::DriftModel;
 using compensation::FailSafe;
 using fixtures::deployed;
 using fixtures::machine;
+using fixtures::warm_machine;
 using ::testing::HasSubstr;
 
 constexpr double kFirstStep_s = 1e9;  // the time before the first row must not matter
@@ -125,6 +126,7 @@ std::vector<Wrong> wrongs() {
           {"first missing", set("X2", 0, 40, NAN)},
           {"never there", set("X3", 0, 300, NAN)},
           {"drive silent", set("spindle", 50, 300, NAN)},
+          {"warm", [](Record& r) { r = warm_machine(5, r.time_s[1] - r.time_s[0]); }},
           {"out of range",
            [](Record& r) {
              for (std::size_t j = 0; j < 4; ++j)
@@ -174,7 +176,7 @@ TEST_P(CFunction, GivesTheBitsOfTheProgramCallByCall) {
       }
       most = std::max(most, std::abs(expected.correction_um[i]));
     }
-    EXPECT_GT(most, 1.0) << wrong.name;
+    EXPECT_EQ(most > 1.0, !(from_start && wrong.name == std::string("warm"))) << wrong.name;
   }
 }
 

@@ -33,6 +33,18 @@ inline Record machine(std::uint64_t seed, double period_s) {
   return r;
 }
 
+/// The same machine just after work: X1, and what follows it, is warm.
+inline Record warm_machine(std::uint64_t seed, double period_s) {
+  Record r = machine(seed, period_s);
+  for (std::size_t i = 0; i < r.n_samples(); ++i) {
+    const double warmer_K = 5.0 * std::exp(-0.05 * static_cast<double>(i));
+    r.channels[0].values[i] += warmer_K;
+    r.channels[2].values[i] += 0.5 * warmer_K;
+    r.channels[3].values[i] += warmer_K;
+  }
+  return r;
+}
+
 inline DeployedModel deployed(bool from_start, double period_s) {
   DeployedModel d;
   d.model = {.kind = "regression with lags",
@@ -54,6 +66,11 @@ inline DeployedModel deployed(bool from_start, double period_s) {
   std::vector<std::vector<double>> predicted;
   for (const Record& r : training) predicted.push_back(d.model.predict(r));
   d.safe = compensation::learn_fail_safe(training, {"X1", "X2", "X3", "X4", "spindle"}, predicted, from_start);
+  std::vector<std::vector<double>> starts(2);
+  for (std::size_t r = 0; r < training.size(); ++r) {
+    for (const FailSafe::Guard& g : d.safe.guards) starts[r].push_back(training[r].at(g.input).values.front());
+  }
+  compensation::watch_start(d.safe, starts, compensation::FormulaPredictor(d.model).memory_s());
   d.interval_um = 2.0 / 7.0;
   return d;
 }
