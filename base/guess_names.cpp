@@ -61,6 +61,14 @@ HeaderWords words_of_header(const std::string& header, const std::string& unit_l
     if (!name.empty() && trimmed(after).empty())
       rest = trimmed(before);  // "Temp, °F (LGR S/N: 10432, ...)": an instrument's number
   }
+  // "feed_mm_min": a quotient as in names of this program's records
+  if (const std::size_t per = rest.rfind('_'); per != std::string::npos && per > 0) {
+    const std::size_t at = rest.rfind('_', per - 1);
+    if (at != std::string::npos && at > 0) {
+      const std::string unit = unit_of_words(rest.substr(at + 1, per - at - 1) + "/" + rest.substr(per + 1));
+      if (!unit.empty()) return {trimmed(rest.substr(0, at)), unit};
+    }
+  }
   for (const std::string end : {"/", ",", " in ", " ", "_"}) {  // "T3/°C", "T3, °C", "T3 in °C", "T3 °C", "T3_degC"
     const std::size_t at = rest.rfind(end);
     if (at == std::string::npos || at == 0) continue;

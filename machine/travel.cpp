@@ -17,7 +17,7 @@
 namespace driftwright::scenarios {
 namespace {
 
-/// The digits of a number behind the point, in their reverse order: 0 < value < 1 for index > 0.
+/// The digits of a number in reverse order, after the point (Halton's sequence): 0 < value < 1 for index > 0.
 double radical_inverse(int index, int base) {
   double value = 0.0, digit = 1.0 / base;
   for (int rest = index; rest > 0; rest /= base, digit /= base) value += digit * (rest % base);

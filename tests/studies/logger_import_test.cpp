@@ -115,6 +115,18 @@ TEST(LoggerImport, GuessesWhatWasMappedByHand) {
   expect_values(simatic, "speed_rpm", {3000, 3000, 0});
 }
 
+// A unit that is a quotient has a '_' in names of records.
+TEST(LoggerImport, ReadsQuotientsInNamesOfColumns) {
+  const Record record = studies::import_logger(write_file("log.csv",
+                                                          "time_s,speed_rpm,feed_mm_min,slope_mm_m,way_mm\n"
+                                                          "0,0,100,0.1,1\n60,10,200,0.2,2\n120,10,300,0.3,3\n"),
+                                               "", {.zone = "", .interval = "", .every = ""})
+                            .read.record;
+  expect_values(record, "feed_mm_min", {100.0, 200.0, 300.0});
+  expect_values(record, "slope_1", {1e-4, 2e-4, 3e-4});
+  expect_values(record, "way_um", {1000.0, 2000.0, 3000.0});
+}
+
 /// Measured by others, in records: the units in headers are understood, whatever the columns are called.
 TEST(LoggerImport, ReadsRecordsAsTheReaderOfRecordsDoes) {
   const std::string path = "../shared/data/fl_thermal/first_28h.csv";
