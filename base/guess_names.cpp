@@ -66,7 +66,8 @@ HeaderWords words_of_header(const std::string& header, const std::string& unit_l
     const std::size_t at = rest.rfind('_', per - 1);
     if (at != std::string::npos && at > 0) {
       const std::string unit = unit_of_words(rest.substr(at + 1, per - at - 1) + "/" + rest.substr(per + 1));
-      if (!unit.empty()) return {trimmed(rest.substr(0, at)), unit};
+      const bool is_rate = rest.substr(per + 1) == "min" && !has_word(rest, {"feed", "vorschub", "flow"});  // a minimum?
+      if (!unit.empty() && rest.substr(at + 1, per - at - 1) != "1" && !is_rate) return {trimmed(rest.substr(0, at)), unit};
     }
   }
   for (const std::string end : {"/", ",", " in ", " ", "_"}) {  // "T3/°C", "T3, °C", "T3 in °C", "T3 °C", "T3_degC"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -58,8 +59,13 @@ void require_guided(const mesh::Mesh& mesh, const mesh::Joint& joint, const Movi
                                      (way.turns ? "`about`, `through` or `turns`" : "`along` or `moves`"));
 }
 
+/// Bodies that the same axes move are where the drawing has them: facets of a coarse mesh may lie in each other there.
 void require_apart(const mesh::Mesh& mesh, const std::vector<MovingAxis>& axes) {
-  const std::optional<mesh::CellOverlap> overlap = mesh::find_overlap(mesh);
+  std::map<Carriers, int> number_of;
+  std::vector<int> together;
+  for (const std::string& region : mesh.regions)
+    together.push_back(number_of.try_emplace(carriers_of(axes, region), static_cast<int>(number_of.size())).first->second);
+  const std::optional<mesh::CellOverlap> overlap = mesh::find_overlap(mesh, together);
   if (!overlap) return;
   const auto region = [&](int cell) { return mesh.regions[static_cast<std::size_t>(mesh.cells.group[cell])]; };
   const Eigen::Vector3d at_mm = 1e3 * overlap->point_m;

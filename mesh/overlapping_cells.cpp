@@ -1,6 +1,7 @@
 #include "mesh/overlapping_cells.hpp"
 
 #include <Eigen/Geometry>
+#include <map>
 #include <numeric>
 #include <unsupported/Eigen/BVH>
 #include <vector>
@@ -14,9 +15,14 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-/// For each cell a number that the cells of one body share.
-std::vector<int> bodies_of(const Mesh& mesh) {
+/// For each cell a number that the cells of one body share, and of all bodies whose regions have one number in `together`.
+std::vector<int> bodies_of(const Mesh& mesh, const std::vector<int>& together) {
   JoinedSets bodies(mesh.n_nodes());
+  std::map<int, int> node_of;  // by the number
+  for (int c = 0; c < mesh.cells.size() && !together.empty(); ++c) {
+    const int node = mesh.cells.nodes(c)[0];
+    bodies.join(node, node_of.try_emplace(together[static_cast<std::size_t>(mesh.cells.group[c])], node).first->second);
+  }
   for (int c = 0; c < mesh.cells.size(); ++c) {
     const auto nodes = mesh.cells.nodes(c);
     for (int n : nodes) bodies.join(n, nodes[0]);
@@ -52,8 +58,8 @@ FirstOfAnotherBody(const std::vector<int>&, int, Box, Meets) -> FirstOfAnotherBo
 
 }  // namespace
 
-std::optional<CellOverlap> find_overlap(const Mesh& mesh) {
-  const std::vector<int> body = bodies_of(mesh);
+std::optional<CellOverlap> find_overlap(const Mesh& mesh, const std::vector<int>& together) {
+  const std::vector<int> body = bodies_of(mesh, together);
   if (std::all_of(body.begin(), body.end(), [&](int b) { return b == body.front(); })) return std::nullopt;
   std::vector<int> cells(body.size());
   std::iota(cells.begin(), cells.end(), 0);

@@ -2,6 +2,7 @@
 // Bodies may touch and must not overlap: what both fill would count twice.
 
 #include <optional>
+#include <vector>
 
 #include "mesh/mesh.hpp"
 
@@ -17,6 +18,8 @@ struct CellOverlap {
 ///
 /// A cell reaches in where its centre, or a point halfway from there to a corner, lies in a cell of another body. Facets of
 /// curved faces that touch may so lie in each other by a quarter of a cell's thickness; more is an overlap.
-[[nodiscard]] std::optional<CellOverlap> find_overlap(const Mesh& mesh);
+///
+/// @param together  a number for each region: bodies whose regions have the same one are not compared; empty: all are
+[[nodiscard]] std::optional<CellOverlap> find_overlap(const Mesh& mesh, const std::vector<int>& together = {});
 
 }  // namespace driftwright::mesh

@@ -67,28 +67,20 @@ void write_readings(Dialect& to, const FormulaPart& part) {
 /// Less trust after a start unlike those of the training runs, as in drift_repair().
 void write_start(Dialect& to, const FormulaPart& part) {
   const FailSafe& safe = part.safe;
-  std::vector<std::size_t> watched;
+  if (to.is_called() || !std::isfinite(safe.most_start)) return;
+  const std::string warmth = to.variable("sum"), off = to.variable("out"), minus = to.variable("room"),
+                    unknown = to.kept(part.own + "unknown"), started = to.kept("started");
+  to.set(warmth, to.number(0.0));
   for (std::size_t k = 0; k < safe.guards.size(); ++k) {
-    if (std::isfinite(safe.guards[k].start_within)) watched.push_back(k);
+    const FailSafe::Guard& g = safe.guards[k];
+    if (g.start_weight == 0.0) continue;  // the sum of the weights is 0: what all readings have in common has no part
+    to.set(warmth, fmt::format("{} + {} * ( {} - {} )", warmth, to.number(g.start_weight), to.reading(part.readings[k]),
+                               to.number(g.start_offset)));
   }
-  if (to.is_called() || watched.empty()) return;
-  const std::string mean = to.variable("sum"), off = to.variable("out"), minus = to.variable("room"),
-                    furthest = to.variable("wanted"), unknown = to.kept(part.own + "unknown"), started = to.kept("started");
-  const auto above_offset = [&](std::size_t k) {
-    return fmt::format("{} - {}", to.reading(part.readings[k]), to.number(safe.guards[k].start_offset));
-  };
-  to.set(mean, to.number(0.0));
-  for (std::size_t k : watched) to.set(mean, fmt::format("{} + {}", mean, above_offset(k)));
-  to.set(mean, fmt::format("{} / {}", mean, to.number(static_cast<double>(watched.size()))));
-  to.set(furthest, to.number(0.0));
-  for (std::size_t k : watched) {
-    to.set(off, fmt::format("( {} - {} ) / {}", above_offset(k), mean, to.number(safe.guards[k].start_within)));
-    to.set(minus, fmt::format("{} - {}", to.number(0.0), off));
-    to.at_least(furthest, off);
-    to.at_least(furthest, minus);
-  }
+  to.set(minus, fmt::format("{} - {}", to.number(0.0), warmth));
+  to.at_least(warmth, minus);
   to.set(off, to.number(0.0));
-  to.set_if(furthest, Dialect::Compare::kGreater, to.number(1.0), off, to.number(1.0));
+  to.set_if(warmth, Dialect::Compare::kGreater, to.number(safe.most_start), off, to.number(1.0));
   to.set_if(started, Dialect::Compare::kEqual, to.number(0.0), unknown, off);
   to.set(minus, fmt::format("{} - {}", to.number(1.0), unknown));
   to.at_most(to.variable("deserved"), minus);
@@ -173,9 +165,9 @@ std::string write_guard(Dialect& to, const FormulaPart& part) {
 bool read_alike(const FormulaPart& a, const FormulaPart& b) {
   const auto is_same = [](const FailSafe::Guard& x, const FailSafe::Guard& y) {
     return x.input == y.input && x.unit == y.unit && x.low == y.low && x.high == y.high &&
-           x.start_offset == y.start_offset && x.start_within == y.start_within;
+           x.start_offset == y.start_offset && x.start_weight == y.start_weight;
   };
-  return a.safe.start_s == b.safe.start_s &&
+  return a.safe.start_s == b.safe.start_s && a.safe.most_start == b.safe.most_start &&
          std::equal(a.safe.guards.begin(), a.safe.guards.end(), b.safe.guards.begin(), b.safe.guards.end(), is_same);
 }
 

@@ -175,20 +175,20 @@ std::string c_function_called(const std::string& name, const DeployedModel& d, c
     }
     guards.push_back(fmt::format("/* {}: {} */ {{{}, {}, {}, {}, {}, {}, {}, {}, {}}}", k, readings[k], g.is_rise,
                                  c_number(g.low), c_number(g.high), c_number(g.most_jump), c_number(g.others_intercept),
-                                 others, c_number(g.most_apart), c_number(g.start_offset), c_number(g.start_within)));
+                                 others, c_number(g.most_apart), c_number(g.start_offset), c_number(g.start_weight)));
   }
   for (const drift_term& t : formula.terms) terms.push_back(c_term(t));
   text +=
-      "/* is_rise, low, high, most_jump, others_intercept, others_coefficient, most_apart, start_offset, start_within */\n";
+      "/* is_rise, low, high, most_jump, others_intercept, others_coefficient, most_apart, start_offset, start_weight */\n";
   text += table("drift_guard", name + "_guards", guards);
   text += fmt::format(
       "static const drift_fail_safe {0}_safe = {{\n"
       "  {1}_INPUTS, {0}_guards, /* most_replaced */ {2}, /* period_s */ {3}, /* stale_s */ {4}, /* fade_s */ {5},\n"
-      "  /* back_after_s */ {6}, /* back_within */ {7}, /* start_s */ {8}, /* lowest_um */ {9}, /* highest_um */ {10},\n"
-      "  /* most_rate_um_s */ {11}\n}};\n",
+      "  /* back_after_s */ {6}, /* back_within */ {7}, /* most_start */ {8}, /* start_s */ {9},\n"
+      "  /* lowest_um */ {10}, /* highest_um */ {11}, /* most_rate_um_s */ {12}\n}};\n",
       name, capitals, safe.most_replaced, c_number(safe.period_s), c_number(safe.stale_s), c_number(safe.fade_s),
-      c_number(safe.back_after_s), c_number(safe.back_within), c_number(safe.start_s), c_number(safe.lowest_um),
-      c_number(safe.highest_um), c_number(safe.most_rate_um_s));
+      c_number(safe.back_after_s), c_number(safe.back_within), c_number(safe.most_start), c_number(safe.start_s),
+      c_number(safe.lowest_um), c_number(safe.highest_um), c_number(safe.most_rate_um_s));
   text += "/* input, is_rise, holds, is_running, power, coefficient, lag_s */\n";
   text += table("drift_term", name + "_terms", terms);
   text += fmt::format("static const drift_formula {0}_formula = {{{2}, {1}_TERMS, {0}_terms}};\n\n", name, capitals,

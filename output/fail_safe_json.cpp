@@ -9,10 +9,6 @@ namespace driftwright::output {
 
 using compensation::FailSafe;
 
-namespace {
-constexpr double kNotWatched = std::numeric_limits<double>::infinity();
-}
-
 Json fail_safe_json(const FailSafe& s) {
   Json safe = {{"from_start", s.from_start},
                {"period_s", s.period_s},
@@ -22,6 +18,7 @@ Json fail_safe_json(const FailSafe& s) {
                {"fade_s", s.fade_s},
                {"stale_s", s.stale_s},
                {"guards", Json::array()}};
+  if (std::isfinite(s.most_start)) safe["most_start"] = s.most_start;
   if (std::isfinite(s.start_s)) safe["start_s"] = s.start_s;
   for (const FailSafe::Guard& g : s.guards) {
     safe["guards"].push_back({{"input", g.input},
@@ -32,9 +29,9 @@ Json fail_safe_json(const FailSafe& s) {
                               {"others_intercept", g.others_intercept},
                               {"others_coefficient", g.others_coefficient},
                               {"most_apart", g.most_apart}});
-    if (std::isfinite(g.start_within)) {
+    if (g.start_weight != 0.0) {
       safe["guards"].back()["start_offset"] = g.start_offset;
-      safe["guards"].back()["start_within"] = g.start_within;
+      safe["guards"].back()["start_weight"] = g.start_weight;
     }
   }
   return safe;
@@ -49,6 +46,7 @@ FailSafe fail_safe_of(const Json& s) {
   safe.most_rate_um_s = finite(s, "most_rate_um_s");
   safe.fade_s = positive(s, "fade_s");
   safe.stale_s = finite(s, "stale_s");
+  if (s.contains("most_start")) safe.most_start = positive(s, "most_start");
   if (s.contains("start_s")) safe.start_s = positive(s, "start_s");
   if (safe.lowest_um > safe.highest_um)
     throw InputError(fmt::format("`lowest_um` {} is above `highest_um` {}", safe.lowest_um, safe.highest_um));
@@ -63,7 +61,7 @@ FailSafe fail_safe_of(const Json& s) {
                            .others_coefficient = value<std::vector<double>>(g, "others_coefficient"),
                            .most_apart = finite(g, "most_apart"),
                            .start_offset = g.contains("start_offset") ? finite(g, "start_offset") : 0.0,
-                           .start_within = g.contains("start_within") ? positive(g, "start_within") : kNotWatched});
+                           .start_weight = g.contains("start_weight") ? finite(g, "start_weight") : 0.0});
     const FailSafe::Guard& guard = safe.guards.back();
     if (!(guard.low <= guard.high))  // equal if a drive was 0 in all training runs
       throw InputError(fmt::format("guard '{}' has `low` {} above `high` {}", guard.input, guard.low, guard.high));

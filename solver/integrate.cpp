@@ -222,12 +222,12 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
     check(ARKStepReset(mem, t_s, y.get()), "ARKStepReset", t_s, callee);
     check(ARKStepSetInitStep(mem, std::min(5.0, 0.1 * (end_s - t_s))), "ARKStepSetInitStep", t_s, callee);
   };
-  bool first = true;
+  bool is_elsewhere = true;  // ARKODE is not yet, or not quite, at t
   int n_switches = 0;
   for (const LinearStretch& stretch : stretches) {
     const bool jumps = ode.begin_stretch(stretch, out(y.get()));
-    if (jumps || first) restart(stretch.end_s);
-    first = false;
+    if (jumps || is_elsewhere) restart(stretch.end_s);
+    is_elsewhere = false;
     check(ARKStepSetStopTime(mem, stretch.end_s), "ARKStepSetStopTime", t_s, callee);
     while (t_s < stretch.end_s) {
       const double began_s = t_s;
@@ -238,7 +238,10 @@ Trajectory integrate(StageOde& ode, const std::vector<LinearStretch>& stretches,
       constexpr double kLeastStep = 1e-12;
       if (t_s - began_s <= kLeastStep * t_s) check(ARK_CONV_FAILURE, "ARKStepEvolve", t_s, callee);
       callee.out_of_range.clear();
-      if (t_s > stretch.end_s - 1e-9 * stretch.end_s) t_s = stretch.end_s;
+      if (t_s > stretch.end_s - 1e-9 * stretch.end_s) {
+        is_elsewhere = t_s < stretch.end_s;
+        t_s = stretch.end_s;
+      }
       ode.look(t_s, in(y.get()));
       while (next < n_times && output_s[next] <= t_s) {
         if (output_s[next] == t_s) {

@@ -91,24 +91,26 @@ static void doubt(drift_input_state* in, int why, double size, double until_s) {
   in->doubted_until_s = until_s;
 }
 
-/* Whether the first readings differ among each other otherwise than at the start of the training runs. */
-static int is_strange_start(const drift_fail_safe* safe, const drift_input_state* inputs, const double* readings,
-                            double soon_s) {
-  double mean = 0.0;
-  int k, pass, n_watched = 0;
-  for (pass = 0; pass < 2; ++pass) {
-    for (k = 0; k < safe->n_inputs; ++k) {
-      const drift_guard* guard = &safe->guards[k];
-      if (!isfinite(guard->start_within) || is_doubted(&inputs[k], 0.0, soon_s)) continue;
-      if (pass == 0) {
-        mean += readings[k] - guard->start_offset;
-        ++n_watched;
-      } else if (fabs(readings[k] - guard->start_offset - mean / n_watched) > guard->start_within) {
-        return 1;
-      }
+/* How warm the first readings are: 0 as at the start of the training runs, 1 as in the mean of their rows. */
+static double warmth_of_start(const drift_fail_safe* safe, drift_input_state* inputs, const double* readings) {
+  double mean = 0.0, warmth = 0.0;
+  int k, n_watched = 0;
+  for (k = 0; k < safe->n_inputs; ++k) {
+    if (safe->guards[k].start_weight == 0.0) continue;
+    if (!inputs[k].has_first && isfinite(readings[k])) {
+      inputs[k].first = readings[k];
+      inputs[k].has_first = 1;
     }
+    if (!inputs[k].has_first) continue;
+    mean += inputs[k].first - safe->guards[k].start_offset;
+    ++n_watched;
   }
-  return 0;
+  for (k = 0; k < safe->n_inputs; ++k) {
+    const drift_guard* guard = &safe->guards[k];
+    if (guard->start_weight != 0.0 && inputs[k].has_first)
+      warmth += guard->start_weight * (inputs[k].first - guard->start_offset - mean / n_watched);
+  }
+  return warmth;
 }
 
 double drift_repair(const drift_fail_safe* safe, drift_state* state, drift_input_state* inputs, double* room,
@@ -175,7 +177,8 @@ double drift_repair(const drift_fail_safe* safe, drift_state* state, drift_input
     doubt(&inputs[worst], DRIFT_APART, x[worst] - by_others(&safe->guards[worst], n, x), until_s);
   }
 
-  if (is_first) state->is_strange = is_strange_start(safe, inputs, readings, soon_s);
+  if (isfinite(safe->most_start) && time_s <= safe->stale_s + soon_s)
+    state->is_strange = fabs(warmth_of_start(safe, inputs, readings)) > safe->most_start;
   if (state->is_strange) deserved = 1.0 - exp(-time_s / safe->start_s);
 
   for (k = 0; k < n; ++k) { /* what the readings deserve */

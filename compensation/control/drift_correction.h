@@ -33,7 +33,7 @@ typedef struct {
   const double* others_coefficient; /* n_inputs numbers, 0 for itself; a null pointer: no other input tells of this one */
   double most_apart;                /* by which reading and others may differ, unit of the reading; > 0 */
   double start_offset; /* first reading of a run minus the mean of those that are watched, unit of the reading */
-  double start_within; /* by which it may differ from this; HUGE_VAL: the start of this input is not watched */
+  double start_weight; /* of what the first reading is above this, per unit of it; 0: it is not watched */
 } drift_guard;
 
 typedef struct {
@@ -45,6 +45,7 @@ typedef struct {
   double fade_s;             /* time constant with which trust is lost, and won again; > 0 */
   double back_after_s;       /* for so long a sensor must be beyond doubt before it counts again */
   double back_within;        /* share of most_apart within which a doubted reading must be to be on its way back */
+  double most_start;         /* of the warmth of work with which a run may start; HUGE_VAL: the start is not watched */
   double start_s;            /* time constant with which the formula forgets how a run started; HUGE_VAL: never */
   double lowest_um, highest_um, most_rate_um_s; /* clamp and slew limit of the correction */
 } drift_fail_safe;
@@ -75,9 +76,10 @@ typedef struct {
   int is_doubted;    /* in this row */
   int doubt;         /* what was found wrong in this row first, one of DRIFT_...; a doubt lasts longer than its cause */
   double doubt_size; /* of a jump, or of the distance from what the others say, unit of the reading */
-  int has_start, has_last, is_out, is_untold;
+  int has_start, has_last, is_out, is_untold, has_first;
   double base, start; /* of a rise: first reading of the first row, and what is taken from later ones */
   double used, last, last_s, doubted_until_s;
+  double first; /* reading, before a rise is taken */
 } drift_input_state;
 
 /* What is remembered of one term; all zero before the first row. */
@@ -114,9 +116,9 @@ typedef struct {
  * nothing can replace, cost all of it. A rise that has no reading in the first row goes on from its replacement where it
  * begins.
  *
- * Lags of speeds start at standstill. Where the first readings say that the machine is not as it was at the start of the
- * training runs (a warm one, say), they start wrong: trust is 0 in the first row and comes back while the formula forgets,
- * with start_s. The readings must differ among each other as then, up to what they have in common.
+ * Lags of speeds start at standstill. On a machine that has just worked they start wrong. How warm it is, 0 as at the start of
+ * the training runs and 1 as in the mean of their rows, is a weighted sum of what the first readings of the inputs (within
+ * stale_s) differ from each other. Beyond most_start trust is 0 and comes back while the formula forgets, with start_s.
  *
  * readings: n_inputs, in their units; what is no finite number is missing. repaired: n_inputs; never missing.
  * Returns the trust that the readings deserve, 0 to 1. */

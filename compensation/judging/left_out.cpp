@@ -133,6 +133,25 @@ std::vector<std::vector<double>> starts_of(const Seen& seen, const FailSafe& saf
   return starts;
 }
 
+/// Of each guard, the mean over all rows of its reading minus that at the run's start.
+std::vector<double> rise_of(const Seen& seen, const FailSafe& safe) {
+  std::vector<double> rise;
+  for (const FailSafe::Guard& g : safe.guards) {
+    double sum = 0.0, n = 0.0;
+    for (std::size_t r = 0; r < seen.readings.size(); ++r) {
+      const double start = seen.starts[r].at(g.input).values.front();
+      if (!std::isfinite(start)) continue;
+      for (double x : seen.readings[r].at(g.input).values) {
+        if (!std::isfinite(x)) continue;
+        sum += safe.from_start && !is_drive(g.unit) ? x : x - start;
+        n += 1.0;
+      }
+    }
+    rise.push_back(n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN());
+  }
+  return rise;
+}
+
 /// Fail-safes of a fold with each room. Relations replace readings that are missing or jump; whether they would doubt sound
 /// ones is not tried.
 std::vector<FailSafe> fail_safes_of(const Seen& seen, const Predictor& predictor, const std::vector<std::string>& inputs,
@@ -153,7 +172,7 @@ std::vector<FailSafe> fail_safes_of(const Seen& seen, const Predictor& predictor
   } catch (const InputError&) {  // no row of the rest has all readings: nothing is replaced
   }
   for (FailSafe& safe : list) {
-    watch_start(safe, starts_of(seen, safe), predictor.memory_s());
+    watch_start(safe, starts_of(seen, safe), rise_of(seen, safe), predictor.memory_s());
     limit(safe, s.limits);
   }
   return list;
@@ -162,7 +181,7 @@ std::vector<FailSafe> fail_safes_of(const Seen& seen, const Predictor& predictor
 FailSafe learned(const Seen& seen, const Predictor& predictor, const LeftOutSettings& s, double room) {
   FailSafe safe =
       learn_fail_safe(seen.readings, names_of(guarded_inputs(predictor)), seen.predicted_um, s.from_start, true, room);
-  watch_start(safe, starts_of(seen, safe), predictor.memory_s());
+  watch_start(safe, starts_of(seen, safe), rise_of(seen, safe), predictor.memory_s());
   limit(safe, s.limits);
   return safe;
 }

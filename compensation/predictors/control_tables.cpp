@@ -16,7 +16,7 @@ FailSafeTable fail_safe_table(const FailSafe& safe) {
                             .others_coefficient = g.others_coefficient.empty() ? nullptr : g.others_coefficient.data(),
                             .most_apart = g.most_apart,
                             .start_offset = g.start_offset,
-                            .start_within = g.start_within});
+                            .start_weight = g.start_weight});
   }
   table.safe = {.n_inputs = static_cast<int>(table.guards.size()),
                 .guards = table.guards.data(),
@@ -26,6 +26,7 @@ FailSafeTable fail_safe_table(const FailSafe& safe) {
                 .fade_s = safe.fade_s,
                 .back_after_s = kBackAfter * safe.fade_s,
                 .back_within = kBackWithin,
+                .most_start = safe.most_start,
                 .start_s = safe.start_s,
                 .lowest_um = safe.lowest_um,
                 .highest_um = safe.highest_um,

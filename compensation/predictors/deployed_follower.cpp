@@ -13,8 +13,8 @@
 namespace driftwright::compensation {
 namespace {
 
-constexpr std::size_t kNumbersOfState = 8, kNumbersOfInput = 13;
-constexpr double kForgotten = 3.0;  // time constants: 5 % of the start are left
+constexpr std::size_t kNumbersOfState = 8, kNumbersOfInput = 15;
+constexpr double kForgotten = 5.0;  // time constants: 1 % of the start is left
 
 std::array<double, kNumbersOfState> numbers_of(const drift_state& s) {
   return {static_cast<double>(s.has_repaired),
@@ -43,16 +43,28 @@ std::array<double, kNumbersOfInput> numbers_of(const drift_input_state& s) {
           s.used,
           s.last,
           s.last_s,
-          s.doubted_until_s};
+          s.doubted_until_s,
+          static_cast<double>(s.has_first),
+          s.first};
 }
 drift_input_state input_of(const double* n) {
-  return {n[0] != 0.0, static_cast<int>(n[1]),
-          n[2],        n[3] != 0.0,
-          n[4] != 0.0, n[5] != 0.0,
-          n[6] != 0.0, n[7],
-          n[8],        n[9],
-          n[10],       n[11],
-          n[12]};
+  drift_input_state s{};
+  s.is_doubted = n[0] != 0.0;
+  s.doubt = static_cast<int>(n[1]);
+  s.doubt_size = n[2];
+  s.has_start = n[3] != 0.0;
+  s.has_last = n[4] != 0.0;
+  s.is_out = n[5] != 0.0;
+  s.is_untold = n[6] != 0.0;
+  s.base = n[7];
+  s.start = n[8];
+  s.used = n[9];
+  s.last = n[10];
+  s.last_s = n[11];
+  s.doubted_until_s = n[12];
+  s.has_first = n[13] != 0.0;
+  s.first = n[14];
+  return s;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "base/errors.hpp"
@@ -186,34 +187,51 @@ FailSafe learn_fail_safe(std::span<const Record> as_given, const std::vector<std
   return safe;
 }
 
-void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, double memory_s) {
+void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, std::span<const double> rise,
+                 double memory_s) {
   safe = with_known_start(std::move(safe));
   if (!(memory_s > 0.0)) return;
   safe.start_s = safe.from_start ? std::numeric_limits<double>::infinity() : memory_s;
   std::vector<std::size_t> watched;
   for (std::size_t k = 0; k < safe.guards.size(); ++k) {
-    if (is_of_thermometer(safe.guards[k])) watched.push_back(k);
+    const bool has_start = std::any_of(starts.begin(), starts.end(), [&](const auto& s) { return std::isfinite(s[k]); });
+    if (is_of_thermometer(safe.guards[k]) && std::isfinite(rise[k]) && has_start) watched.push_back(k);
   }
-  if (watched.size() < 2) return;
-  std::vector<Range> offsets(watched.size());
-  for (const std::vector<double>& start : starts) {
-    double sum = 0.0;
-    for (std::size_t k : watched) sum += start[k];
-    if (!std::isfinite(sum)) continue;
-    for (std::size_t n = 0; n < watched.size(); ++n)
-      offsets[n].take(start[watched[n]] - sum / static_cast<double>(watched.size()));
-  }
+  // values of the watched inputs minus their mean; what is missing is at the mean
+  const auto differences = [&](std::span<const double> x) {
+    double sum = 0.0, n = 0.0;
+    for (std::size_t k : watched) {
+      if (!std::isfinite(x[k])) continue;
+      sum += x[k];
+      n += 1.0;
+    }
+    std::vector<double> d;
+    for (std::size_t k : watched) d.push_back(std::isfinite(x[k]) ? x[k] - sum / n : 0.0);
+    return d;
+  };
+  const std::vector<double> pattern = differences(rise);
+  const double square = std::inner_product(pattern.begin(), pattern.end(), pattern.begin(), 0.0);
+  if (!(square > kLeastApart_K * kLeastApart_K)) return;
+  std::vector<std::vector<double>> offsets;
+  for (const std::vector<double>& start : starts) offsets.push_back(differences(start));
   for (std::size_t n = 0; n < watched.size(); ++n) {
-    if (!(offsets[n].low <= offsets[n].high)) return;
     FailSafe::Guard& g = safe.guards[watched[n]];
-    g.start_offset = 0.5 * (offsets[n].low + offsets[n].high);
-    const double half = 0.5 * offsets[n].width();
-    g.start_within = half + std::max(half, kLeastApart_K);
+    for (const std::vector<double>& d : offsets) g.start_offset += d[n] / static_cast<double>(offsets.size());
+    g.start_weight = pattern[n] / square;
   }
+  double furthest = 0.0;
+  for (const std::vector<double>& d : offsets) {
+    double warmth = 0.0;
+    for (std::size_t n = 0; n < watched.size(); ++n)
+      warmth += safe.guards[watched[n]].start_weight * (d[n] - safe.guards[watched[n]].start_offset);
+    furthest = std::max(furthest, std::abs(warmth));
+  }
+  safe.most_start = kMostWarmStart + furthest;
 }
 
 FailSafe with_known_start(FailSafe safe) {
-  for (FailSafe::Guard& g : safe.guards) g.start_within = std::numeric_limits<double>::infinity();
+  for (FailSafe::Guard& g : safe.guards) g.start_offset = g.start_weight = 0.0;
+  safe.most_start = std::numeric_limits<double>::infinity();
   return safe;
 }
 

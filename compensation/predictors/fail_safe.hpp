@@ -29,8 +29,9 @@ struct FailSafe {
     /// Of all inputs in their order, 0 for itself and for drives; empty without other inputs.
     std::vector<double> others_coefficient;
     double most_apart = 0.0;
-    /// First reading of a run minus the mean of those of all watched inputs, and the largest allowed difference from this.
-    double start_offset = 0.0, start_within = std::numeric_limits<double>::infinity();  ///< infinite: not watched
+    /// First reading of a run minus the mean of those of all watched inputs [K], and the weight of what it is above this
+    /// [1/K] in the warmth with which a run starts; 0: not watched.
+    double start_offset = 0.0, start_weight = 0.0;
   };
   std::vector<Guard> guards;
   bool from_start = false;  ///< limits and relations apply to readings minus the first one of the run, except for drives
@@ -39,6 +40,7 @@ struct FailSafe {
   double most_rate_um_s = 0.0;               ///< slew limit of the correction
   double fade_s = 600.0;                     ///< time constant with which trust is lost and regained
   double stale_s = 300.0;  ///< an input without a reading for this long is doubted; until then its last reading applies
+  double most_start = std::numeric_limits<double>::infinity();  ///< warmth with which a run may start; infinite: any
   /// Time constant with which the predictor forgets how a run started; infinite if it never does.
   double start_s = std::numeric_limits<double>::infinity();
 };
@@ -66,12 +68,19 @@ enum class Redundancy { kReplaces, kDoubts };
                                     const std::vector<std::vector<double>>& predicted, bool from_start,
                                     bool is_counted = false, double room = 1.0);
 
-/// Watches the start of a run: a predictor with lags of a drive takes for granted that the machine starts as in its training
-/// runs, usually at rest and cold. A machine that has just worked shows it by differences between its thermometers; trust is
-/// then 0 at the start, and comes back with `memory_s`, or not at all if the drift counts from the start.
+/// Share of the warmth of work beyond which a start is not trusted. A predictor that takes a machine of the share s for cold
+/// is wrong by s of the drift of work; without correction 1 - s of it is left. So it gains up to a half.
+inline constexpr double kMostWarmStart = 0.5;
+
+/// Watches the start of a run: a predictor with lags takes for granted that the machine starts as in its training runs,
+/// usually at rest and cold. How warm a machine is shows in the differences between its thermometers: the warmth is their
+/// first readings' part along the pattern of work (least squares), 0 as at the mean of the training starts, 1 as in the mean
+/// of all training rows. Beyond kMostWarmStart, and what the training starts reach themselves, trust is 0 at the start and
+/// comes back with `memory_s`, or not at all if the drift counts from the start.
 /// @param starts    the first row of each training run whose history is not known: readings of the guards, NaN where missing
-/// @param memory_s  Predictor::memory_s(); 0: nothing is watched
-void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, double memory_s);
+/// @param rise      of each guard, mean over all training rows of its reading minus that at the run's start; NaN: unknown
+/// @param memory_s  Predictor::memory_s(); 0: nothing is watched, as with a pattern of less than 1.5 K
+void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, std::span<const double> rise, double memory_s);
 
 /// Why trust is low then, for a person.
 inline constexpr const char* kStrangeStart =

@@ -95,7 +95,7 @@ drift_guard plain_guard() {
           .others_coefficient = nullptr,
           .most_apart = 0.0,
           .start_offset = 0.0,
-          .start_within = HUGE_VAL};
+          .start_weight = 0.0};
 }
 drift_fail_safe plain_safe(const drift_guard* guards, int n) {
   return {.n_inputs = n,
@@ -106,6 +106,7 @@ drift_fail_safe plain_safe(const drift_guard* guards, int n) {
           .fade_s = 100.0,
           .back_after_s = 300.0,
           .back_within = 0.5,
+          .most_start = HUGE_VAL,
           .start_s = HUGE_VAL,
           .lowest_um = -50.0,
           .highest_um = 80.0,
@@ -171,32 +172,34 @@ TEST(DriftRepair, SaysWhichInputIsInDoubtAndWhy) {
 }
 
 // A machine that begins warm has other differences between its thermometers. What all have in common is the weather.
-TEST(DriftRepair, TrustsNothingThatStartsOtherwiseThanTheTrainingRunsUntilItIsForgotten) {
-  std::vector<drift_guard> guards(3, plain_guard());
+TEST(DriftRepair, TrustsNoStartThatIsHalfAsWarmAsWorkUntilItIsForgotten) {
+  std::vector<drift_guard> guards(3, plain_guard());  // the third is a drive
   guards[0].start_offset = 1.0;
   guards[1].start_offset = -1.0;
-  guards[0].start_within = guards[1].start_within = 2.0;  // the third is a drive
-  const auto trusts = [&](double start_s, double a, double b) {
+  guards[0].start_weight = 0.05;  // work: the first is 10 K, the second -10 K from the mean of both
+  guards[1].start_weight = -0.05;
+  const auto trusts = [&](double start_s, double a, double b, double b_of_second_row = 19.0) {
     drift_fail_safe safe = plain_safe(guards.data(), 3);
+    safe.most_start = 0.5;
     safe.start_s = start_s;
     drift_state state{};
     std::vector<drift_input_state> inputs(3);
     std::vector<double> room(12), repaired(3), trust;
     for (int row = 0; row < 3; ++row) {
-      const double read[] = {row == 0 ? a : 21.0, row == 0 ? b : 19.0, 90.0};
+      const double read[] = {row == 0 ? a : 21.0, row == 0 ? b : row == 1 ? b_of_second_row : 19.0, 90.0};
       trust.push_back(drift_repair(&safe, &state, inputs.data(), room.data(), read, 50.0, repaired.data()));
     }
     return trust;
   };
   EXPECT_THAT(trusts(100.0, 21.0, 19.0), ElementsAre(1.0, 1.0, 1.0));
   EXPECT_THAT(trusts(100.0, 31.0, 29.0), ElementsAre(1.0, 1.0, 1.0));
-  EXPECT_THAT(trusts(100.0, 24.9, 19.0), ElementsAre(1.0, 1.0, 1.0));  // 1.95 from the mean of both
+  EXPECT_THAT(trusts(100.0, 30.9, 19.0), ElementsAre(1.0, 1.0, 1.0));  // 9.9 K apart: 0.495
   const std::vector<double> forgets = {0.0, 1.0 - std::exp(-0.5), 1.0 - std::exp(-1.0)};
-  EXPECT_EQ(trusts(100.0, 25.1, 19.0), forgets);
-  EXPECT_EQ(trusts(100.0, 21.0, 23.1), forgets);
-  EXPECT_THAT(trusts(HUGE_VAL, 25.1, 19.0), ElementsAre(0.0, 0.0, 0.0));
-  // one without a reading says nothing, and costs trust by itself
-  EXPECT_THAT(trusts(100.0, NAN, 23.1), ElementsAre(0.0, 0.0, 0.0));
+  EXPECT_EQ(trusts(100.0, 31.1, 19.0), forgets);
+  EXPECT_EQ(trusts(100.0, 21.0, 29.1), forgets);  // or as much colder
+  EXPECT_THAT(trusts(HUGE_VAL, 31.1, 19.0), ElementsAre(0.0, 0.0, 0.0));
+  // a thermometer whose first reading comes later is judged by that
+  EXPECT_THAT(trusts(HUGE_VAL, 21.0, NAN, 29.1), ElementsAre(0.0, 0.0, 0.0));
 }
 
 // Two steps at once are the stages one by one.

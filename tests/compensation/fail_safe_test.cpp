@@ -380,51 +380,55 @@ FailSafe wide(const std::vector<std::string>& units) {
   return safe;
 }
 
-TEST(WatchStart, LearnsHowThermometersDifferWhereTrainingRunsBegin) {
+TEST(WatchStart, LearnsThePatternOfWorkInTheDifferencesBetweenThermometers) {
   FailSafe safe = wide({"degC", "K", "rpm", "degC"});
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  // means 20 and 30: differences -2 and -1, 1 and 1, 1 and 0; the run with a gap says nothing
-  const std::vector<std::vector<double>> starts = {
-      {18.0, 21.0, 0.0, 21.0}, {29.0, 31.0, 4000.0, 30.0}, {50.0, nan, 0.0, 0.0}};
-  watch_start(safe, starts, 7200.0);
+  // means 20 and 30: differences -2 and -1, 1 and 1, 1 and 0
+  const std::vector<std::vector<double>> starts = {{18.0, 21.0, 0.0, 21.0}, {29.0, 31.0, 4000.0, 30.0}};
+  // by 10, 1 and 1 K warmer in the mean of all rows: 6, -3, -3 from the mean of the three
+  const std::vector<double> rise = {10.0, 1.0, 3000.0, 1.0};
+  watch_start(safe, starts, rise, 7200.0);
   EXPECT_EQ(safe.start_s, 7200.0);
-  const auto is = [&](std::size_t k, double offset, double within) {
+  const auto is = [&](std::size_t k, double offset, double weight) {
     EXPECT_NEAR(safe.guards[k].start_offset, offset, 1e-12) << k;
-    EXPECT_NEAR(safe.guards[k].start_within, within, 1e-12) << k;
+    EXPECT_NEAR(safe.guards[k].start_weight, weight, 1e-12) << k;
   };
-  is(0, -1.5, 2.0);  // half of the range, and 1.5 K for instruments
-  is(1, 1.0, 1.5);
-  is(3, 0.5, 2.0);
-  EXPECT_EQ(safe.guards[2].start_within, HUGE_VAL);  // a speed
-  const auto deserved = [&](double warmer_K) {
+  is(0, -1.5, 6.0 / 54.0);
+  is(1, 1.0, -3.0 / 54.0);
+  is(2, 0.0, 0.0);  // a speed
+  is(3, 0.5, -3.0 / 54.0);
+  EXPECT_NEAR(safe.most_start, 0.5 + (0.5 * 6.0 + 0.5 * 3.0) / 54.0, 1e-12);  // half, and what training starts reach
+  const auto deserved = [&](double share) {
     const Record run{.source = "run",
                      .time_s = {0.0, 7200.0},
-                     .channels = {{"in0", "degC", {8.5 + warmer_K, 10.0}},
-                                  {"in1", "K", {11.0, 10.0}},
+                     .channels = {{"in0", "degC", {8.5 + 10.0 * share, 10.0}},
+                                  {"in1", "K", {11.0 + share, 10.0}},
                                   {"in2", "rpm", {100.0, 0.0}},
-                                  {"in3", "degC", {10.5, 10.0}}}};
+                                  {"in3", "degC", {10.5 + share, 10.0}}}};
     return repaired(safe, run).deserved;
   };
-  EXPECT_THAT(deserved(2.9), ElementsAre(1.0, 1.0));  // by 2.9 * 2/3 from the mean of three
-  EXPECT_THAT(deserved(3.1), ElementsAre(0.0, 1.0 - std::exp(-1.0)));
+  EXPECT_THAT(deserved(0.57), ElementsAre(1.0, 1.0));
+  EXPECT_THAT(deserved(0.59), ElementsAre(0.0, 1.0 - std::exp(-1.0)));
   safe.from_start = true;
-  watch_start(safe, starts, 7200.0);
-  EXPECT_THAT(deserved(3.1), ElementsAre(0.0, 0.0));
+  watch_start(safe, starts, rise, 7200.0);
+  EXPECT_THAT(deserved(0.59), ElementsAre(0.0, 0.0));
 }
 
 TEST(WatchStart, WatchesNothingWhereNothingIsTakenForGranted) {
   const std::vector<std::vector<double>> starts = {{18.0, 21.0}};
-  const auto is_watched = [&](FailSafe safe, std::span<const std::vector<double>> of, double memory_s) {
-    watch_start(safe, of, memory_s);
-    return std::isfinite(safe.guards.front().start_within);
+  const std::vector<double> rise = {4.0, 0.0}, little = {2.0, 0.0};
+  const auto is_watched = [&](FailSafe safe, std::span<const std::vector<double>> of, std::span<const double> by,
+                              double memory_s) {
+    watch_start(safe, of, by, memory_s);
+    return std::isfinite(safe.most_start);
   };
-  EXPECT_TRUE(is_watched(wide({"degC", "degC"}), starts, 600.0));
-  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), starts, 0.0));   // no memory
-  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), {}, 600.0));     // no start is known
-  EXPECT_FALSE(is_watched(wide({"degC", "rpm"}), starts, 600.0));  // one thermometer differs from nothing
+  EXPECT_TRUE(is_watched(wide({"degC", "degC"}), starts, rise, 600.0));
+  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), starts, rise, 0.0));      // no memory
+  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), {}, rise, 600.0));        // no start is known
+  EXPECT_FALSE(is_watched(wide({"degC", "rpm"}), starts, rise, 600.0));     // one thermometer differs from nothing
+  EXPECT_FALSE(is_watched(wide({"degC", "degC"}), starts, little, 600.0));  // a pattern of 1.41 K, as errors may have
   FailSafe safe = wide({"degC", "degC"});
-  watch_start(safe, starts, 600.0);
-  EXPECT_FALSE(std::isfinite(with_known_start(safe).guards.front().start_within));
+  watch_start(safe, starts, rise, 600.0);
+  EXPECT_FALSE(std::isfinite(with_known_start(safe).most_start));
 }
 
 // The rows before a run say how it starts.
@@ -435,7 +439,7 @@ TEST(Predict, OfARunWithALeadInTakesItsStartForKnown) {
                                   .terms = {{.input = "in0", .unit = "degC", .coefficient = 1.0, .lag_s = 60.0}}});
   EXPECT_EQ(formula.memory_s(), 60.0);
   FailSafe safe = wide({"degC", "degC"});
-  watch_start(safe, std::vector<std::vector<double>>{{20.0, 20.0}}, formula.memory_s());
+  watch_start(safe, std::vector<std::vector<double>>{{20.0, 20.0}}, std::vector<double>{10.0, 0.0}, formula.memory_s());
   MachineRun run{.cyclogram = {},
                  .ambient = {},
                  .readings = {.source = "run",

@@ -205,6 +205,9 @@ TEST_P(Overlap, IsFoundWhereOneBodyReachesIntoAnother) {
     EXPECT_TRUE(find_overlap(two_boxes(GetParam(), 0.0, 0.1, turn_rad))) << "at one place";
     EXPECT_TRUE(find_overlap(two_boxes(GetParam(), 0.04, 0.02, turn_rad))) << "one wholly in the other";
   }
+  const Mesh deep = two_boxes(GetParam(), 0.07);
+  EXPECT_FALSE(find_overlap(deep, {5, 5})) << "bodies that stay together are not compared";
+  EXPECT_TRUE(find_overlap(deep, {5, 4}));
   const auto found = find_overlap(two_boxes(GetParam(), 0.04, 0.02));
   ASSERT_TRUE(found);
   EXPECT_GT(found->point_m[2], 0.04);

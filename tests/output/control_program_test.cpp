@@ -485,6 +485,7 @@ std::vector<PlacedModel> three_places(bool from_start, double period_s, bool rea
     if (at_mm == 300.0 && !read_alike) {
       std::erase_if(d.model.terms, [](const auto& t) { return t.input == "X1"; });
       std::erase_if(d.safe.guards, [](const auto& g) { return g.input == "X1"; });
+      d.safe = compensation::with_known_start(std::move(d.safe));  // weights are of all thermometers together
     }
     places.push_back({std::move(d), at_mm});
   }

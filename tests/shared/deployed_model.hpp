@@ -70,7 +70,8 @@ inline DeployedModel deployed(bool from_start, double period_s) {
   for (std::size_t r = 0; r < training.size(); ++r) {
     for (const FailSafe::Guard& g : d.safe.guards) starts[r].push_back(training[r].at(g.input).values.front());
   }
-  compensation::watch_start(d.safe, starts, compensation::FormulaPredictor(d.model).memory_s());
+  const std::vector<double> rise = {6.0, 1.0, 3.5, 6.0, 0.0};  // as of warm_machine() at its start
+  compensation::watch_start(d.safe, starts, rise, compensation::FormulaPredictor(d.model).memory_s());
   d.interval_um = 2.0 / 7.0;
   return d;
 }

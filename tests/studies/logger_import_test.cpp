@@ -125,6 +125,15 @@ TEST(LoggerImport, ReadsQuotientsInNamesOfColumns) {
   expect_values(record, "feed_mm_min", {100.0, 200.0, 300.0});
   expect_values(record, "slope_1", {1e-4, 2e-4, 3e-4});
   expect_values(record, "way_um", {1000.0, 2000.0, 3000.0});
+  // a number and a minimum are none
+  const Record others = studies::import_logger(write_file("log.csv",
+                                                          "time_s,speed_rpm,sensor_1_min,way_mm_min,temp_1_K\n"
+                                                          "0,0,1,2,300\n60,10,1,2,301\n120,10,1,2,302\n"),
+                                               "", {.zone = "", .interval = "", .every = ""})
+                            .read.record;
+  EXPECT_EQ(others.find("way"), nullptr);
+  EXPECT_EQ(others.find("sensor"), nullptr);
+  EXPECT_EQ(others.at("speed_rpm").values.back(), 10.0);
 }
 
 /// Measured by others, in records: the units in headers are understood, whatever the columns are called.
