@@ -197,23 +197,23 @@ void watch_start(FailSafe& safe, std::span<const std::vector<double>> starts, st
     const bool has_start = std::any_of(starts.begin(), starts.end(), [&](const auto& s) { return std::isfinite(s[k]); });
     if (is_of_thermometer(safe.guards[k]) && std::isfinite(rise[k]) && has_start) watched.push_back(k);
   }
-  // values of the watched inputs minus their mean; what is missing is at the mean
+  // values of the watched inputs minus their mean
   const auto differences = [&](std::span<const double> x) {
-    double sum = 0.0, n = 0.0;
-    for (std::size_t k : watched) {
-      if (!std::isfinite(x[k])) continue;
-      sum += x[k];
-      n += 1.0;
-    }
+    double sum = 0.0;
+    for (std::size_t k : watched) sum += x[k];
     std::vector<double> d;
-    for (std::size_t k : watched) d.push_back(std::isfinite(x[k]) ? x[k] - sum / n : 0.0);
+    for (std::size_t k : watched) d.push_back(x[k] - sum / static_cast<double>(watched.size()));
     return d;
   };
   const std::vector<double> pattern = differences(rise);
   const double square = std::inner_product(pattern.begin(), pattern.end(), pattern.begin(), 0.0);
   if (!(square > kLeastApart_K * kLeastApart_K)) return;
   std::vector<std::vector<double>> offsets;
-  for (const std::vector<double>& start : starts) offsets.push_back(differences(start));
+  for (const std::vector<double>& start : starts) {
+    if (std::all_of(watched.begin(), watched.end(), [&](std::size_t k) { return std::isfinite(start[k]); }))
+      offsets.push_back(differences(start));
+  }
+  if (offsets.empty()) return;
   for (std::size_t n = 0; n < watched.size(); ++n) {
     FailSafe::Guard& g = safe.guards[watched[n]];
     for (const std::vector<double>& d : offsets) g.start_offset += d[n] / static_cast<double>(offsets.size());
@@ -256,6 +256,7 @@ Repaired repaired(const FailSafe& safe, Record readings) {
   std::vector<drift_input_state> inputs(n);
   std::vector<double> room(n * (n + 1)), read(n), x(n);
   std::vector<char> was_doubted(n, 0);
+  int was_strange = 0;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     for (std::size_t k = 0; k < n; ++k) read[k] = (*channel[k])[i];
     result.deserved.push_back(
@@ -267,7 +268,8 @@ Repaired repaired(const FailSafe& safe, Record readings) {
       was_doubted[k] = static_cast<char>(inputs[k].is_doubted);
       (*channel[k])[i] = x[k];
     }
-    if (i == 0 && state.is_strange) result.events.push_back(kStrangeStart);
+    if (state.is_strange && !was_strange) result.events.push_back(kStrangeStart);
+    was_strange = state.is_strange;
   }
   return result;
 }

@@ -383,7 +383,9 @@ FailSafe wide(const std::vector<std::string>& units) {
 TEST(WatchStart, LearnsThePatternOfWorkInTheDifferencesBetweenThermometers) {
   FailSafe safe = wide({"degC", "K", "rpm", "degC"});
   // means 20 and 30: differences -2 and -1, 1 and 1, 1 and 0
-  const std::vector<std::vector<double>> starts = {{18.0, 21.0, 0.0, 21.0}, {29.0, 31.0, 4000.0, 30.0}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();  // starts with gaps, and of runs with a lead-in, say nothing
+  const std::vector<std::vector<double>> starts = {
+      {18.0, 21.0, 0.0, 21.0}, {50.0, nan, 0.0, 0.0}, {29.0, 31.0, 4000.0, 30.0}, {nan, nan, nan, nan}};
   // by 10, 1 and 1 K warmer in the mean of all rows: 6, -3, -3 from the mean of the three
   const std::vector<double> rise = {10.0, 1.0, 3000.0, 1.0};
   watch_start(safe, starts, rise, 7200.0);
